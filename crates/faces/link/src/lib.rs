@@ -54,7 +54,7 @@ pub use characters::{AFTER_DC3, Characters, DC1, DC3, Parity};
 pub use drive::{Attendant, Tap, drive};
 pub use files::{Files, Listed, Memory, NewFile, OfKinds};
 pub use hard_copy::HardCopy;
-pub use module::{ModuleWiring, PositioningModule};
+pub use module::PositioningModule;
 pub use monitor::Monitor;
 pub use passive::{Passive, peripheral};
 pub use plc_line::PlcLine;

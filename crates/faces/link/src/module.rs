@@ -7,7 +7,7 @@
 
 use std::time::Duration;
 
-use bahn_host::{Action, Host, HostError, Next, Notice, Reader, Source, Stamped};
+use bahn_host::{Action, Host, HostError, ModuleFolder, Next, Notice, Reader, Source, Stamped};
 use bahn_tnc::{Command, DataLineEvent, DataLineOrder, LineEvent, LineSetup, Switch};
 
 use crate::characters::Characters;
@@ -17,20 +17,11 @@ use crate::settings::Settings;
 /// Number of the interface RS-422/V.11 for modules 9100 to 9107 [000:15629].
 const RS_422: usize = 1;
 
-/// How a module is wired to its control.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ModuleWiring {
-    /// The input of the control's PLC that is 1 while the module has control voltage.
-    pub voltage: Option<usize>,
-    /// How long one control may be not ready until the EMERGENCY STOP chain of the other one opens, ms.
-    pub ready_delay_ms: u32,
-}
-
 /// A positioning module that is on.
 pub struct PositioningModule {
     /// The module: a control with its machine.
     pub host: Host,
-    wiring: ModuleWiring,
+    wiring: ModuleFolder,
     /// Of the control, and of the module.
     ends: [End; 2],
     /// Characters that have gone to the module, and to the control.
@@ -145,7 +136,7 @@ fn tell(host: &mut Host, event: LineEvent) -> Result<(), HostError> {
 
 impl PositioningModule {
     /// A module that was switched on with its control.
-    pub fn new(host: Host, control: &Host, wiring: ModuleWiring) -> PositioningModule {
+    pub fn new(host: Host, control: &Host, wiring: ModuleFolder) -> PositioningModule {
         PositioningModule {
             ends: [End::new(control), End::new(&host)],
             host,

@@ -96,7 +96,7 @@ pub mod tool_table;
 pub use action::{Action, ActionError, Answer, Source};
 pub use any_plant::AnyPlant;
 /// What a plant takes and answers, for whoever writes one.
-pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics};
+pub use bahn_machine::{DeviceState, Event, KeyAction, MagazineState, Mechanics, ModuleFolder};
 /// What the times of a script count from.
 pub use bahn_script::Base;
 pub use columns::{Cell, TextRow, TextTable, canonical};

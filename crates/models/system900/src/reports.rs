@@ -12,7 +12,7 @@ use crate::array::{Cell, number_or_none};
 use crate::memory::{Memory, SpaceError};
 use crate::name::Name;
 use crate::status::Status;
-use crate::table::{Needs, Row, row};
+use crate::table::{Needs, row};
 
 /// What a parameter means.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,35 +54,22 @@ pub struct Explanation {
 impl Explanation {
     /// Of a parameter; `None` for a number without a row.
     pub fn of(name: Name) -> Option<Explanation> {
-        let Row {
-            number,
-            title,
-            kind,
-            unit,
-            values,
-            default,
-            default_number,
-            source,
-            meaning,
-            reason,
-            ..
-        } = *row(name)?;
         let row = row(name)?;
         Some(Explanation {
             name,
-            base: number,
-            title,
-            kind,
-            unit,
-            values,
-            default,
-            default_number,
-            source,
+            base: row.number,
+            title: row.title,
+            kind: row.kind,
+            unit: row.unit,
+            values: row.values,
+            default: row.default,
+            default_number: row.default_number,
+            source: row.source,
             needs: row.needs.id(),
             effect: row.effect.id(),
-            reason,
+            reason: row.reason,
             plc: row.plc().collect(),
-            meaning,
+            meaning: row.meaning,
             needs_words: row.needs.words(),
         })
     }
@@ -249,7 +236,7 @@ pub struct Difference {
     /// What it is in the second, likewise.
     pub b: Option<f64>,
     /// What the change needs.
-    pub needs: &'static str,
+    pub needs: Needs,
 }
 
 /// In a line.
@@ -258,8 +245,8 @@ impl fmt::Display for Difference {
         let [a, b] = [self.a, self.b].map(number_or_none);
         write!(f, "{}  {a} -> {b}", self.name)?;
         match self.needs {
-            "nothing" => Ok(()),
-            needs => write!(f, "  needs {needs}"),
+            Needs::Nothing => Ok(()),
+            needs => write!(f, "  needs {}", needs.id()),
         }
     }
 }
@@ -277,7 +264,7 @@ pub fn differences(a: &Memory, b: &Memory) -> Vec<Difference> {
             q: b.q(name).or_else(|_| a.q(name)).ok(),
             a: in_a,
             b: in_b,
-            needs: row(name).map_or(Needs::Nothing, |row| row.needs).id(),
+            needs: row(name).map_or(Needs::Nothing, |row| row.needs),
         })
     });
     different.collect()

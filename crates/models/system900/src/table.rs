@@ -6,6 +6,8 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
+use serde::Serialize;
+
 use crate::name::Name;
 use crate::numbers::{AXES, AXIS, AXIS_BLOCK, DESCRIPTOR, SHARED, SHARED_COUNT};
 
@@ -50,6 +52,12 @@ impl Needs {
             Needs::Restart => "a restart of the control",
             Needs::Reset => "a reset of the control with `Clear parameter`",
         }
+    }
+}
+
+impl Serialize for Needs {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.id())
     }
 }
 

@@ -1,4 +1,5 @@
 //! The stylus of a measuring probe on ideal surfaces [000:7882-7958].
+
 use bahn_motion::{Scan, ScanStep, Sense};
 use bahn_path::{
     Axis, MeasuringRules, ScanFault, ScanJob, ScanName, ScanPattern, ScanPoint, ScanRules, Scanned,

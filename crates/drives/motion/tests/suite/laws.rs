@@ -1,4 +1,5 @@
 //! Laws that hold for every path.
+
 use crate::common::random::{
     Block, Random, check_axes, polyline, random_path, regular_corners, window_cycles,
 };

@@ -1,4 +1,5 @@
 //! The interpolator: the path in contour cycles with overrides, stops and gates.
+
 use crate::common::{List, Path, limits, list, plan, time_s};
 use bahn_motion::{Drive, Gate, Interpolator, Limits, Place, Prepared, State, Stop};
 use bahn_path::{

@@ -1,4 +1,5 @@
 //! Paths that do not stand upright: the limits of the axes hold with cycle 19 and M114.
+
 use std::sync::Arc;
 
 use crate::common::*;

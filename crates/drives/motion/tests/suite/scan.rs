@@ -1,4 +1,5 @@
 //! The stylus on ideal surfaces [000:7722-7880].
+
 #![allow(clippy::panic, clippy::type_complexity, reason = "a test may fail")]
 
 use bahn_motion::{Scan, ScanStep, Sense};

@@ -1,4 +1,5 @@
 //! When functions go out and where the path waits for them, type by type [004:54-90].
+
 use crate::common::{List, Path, limits, list};
 use bahn_motion::{Drive, Interpolator, Limits, State};
 use bahn_path::{

@@ -1,4 +1,5 @@
 //! Paths that follow the spindle.
+
 use crate::common::{List, Path, function, list, plan, time_s};
 use bahn_motion::{Cycle, Drive, Gate, Interpolator, Limits, Master, SpindleGear, State};
 use bahn_path::{At, Axis, Curve, Function, OverrideLaw, Position, Sense, Step, Synchronisation, Thread};

@@ -1,4 +1,5 @@
 //! Synchronized axes [000:4451-4539].
+
 use crate::common::Bench;
 use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
 use bahn_servo::{Fault, Gantry, GrossFault};

@@ -1,4 +1,5 @@
 //! Operation with servo lag [000:4735-4925].
+
 use crate::common::Bench;
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::Method;

@@ -1,4 +1,5 @@
 //! Laws of the position loop.
+
 use crate::common::Bench;
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::Method;

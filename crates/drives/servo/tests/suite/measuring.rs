@@ -1,4 +1,5 @@
 //! From the encoder to the position of the table [000:3184-3330] [000:3632-3929].
+
 use crate::common::{Bench, settings};
 use bahn_parameters::ControlModel::{Tnc407, Tnc415b};
 use bahn_servo::{Axis, DistanceCode, Encoder, EncoderFault, Fault};

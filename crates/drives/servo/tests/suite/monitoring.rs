@@ -1,4 +1,5 @@
 //! Monitoring: each fault at its edge [000:5160-5300].
+
 use crate::common::Bench;
 use bahn_parameters::ControlModel::Tnc415b;
 use bahn_parameters::MessageId;

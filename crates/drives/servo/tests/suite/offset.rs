@@ -1,4 +1,5 @@
 //! Offset adjustment in all its forms [000:5002-5072].
+
 use crate::common::Bench;
 use bahn_parameters::ControlModel::{self, Tnc407, Tnc415b};
 use bahn_servo::{Fault, GrossFault, OffsetInterval};

@@ -1,4 +1,5 @@
 //! Operation with feed pre-control [000:4929-4975].
+
 use std::f64::consts::TAU;
 
 use crate::common::Bench;

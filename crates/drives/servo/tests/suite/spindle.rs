@@ -1,4 +1,5 @@
 //! The main spindle [000:5438-5945].
+
 use bahn_parameters::{
     ControlModel::{Tnc407, Tnc415b},
     ParameterList,

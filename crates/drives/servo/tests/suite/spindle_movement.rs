@@ -1,5 +1,6 @@
 //! Movement monitoring of a spindle that is led along a thread: it is held against what it is told as an axis is against its
 //! voltage [000:5266-5287] (inferred).
+
 use bahn_parameters::{ControlModel::Tnc415b, ParameterList};
 use bahn_servo::{Encoder, Fault, GrossFault, Rotation, Spindle, Timing};
 

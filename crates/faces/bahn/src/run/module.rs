@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use bahn_host::{Attendance, FolderPrograms, Host, LoadedMachine, Operator, PowerOn};
-use bahn_link::{ModuleWiring, PositioningModule};
+use bahn_link::PositioningModule;
 use bahn_report::run::ModuleRun;
 use bahn_text::Diagnostic;
 
@@ -69,10 +69,6 @@ pub(super) fn switch_on(
     let programs = Arc::new(FolderPrograms::of_folder(&module.programs(0)));
     let operator = Operator::new(Attendance::Absent, module.folder.operator.clone(), None);
     let host = Host::new(module, power_on, programs, operator)?;
-    let wiring = ModuleWiring {
-        voltage: wiring.voltage,
-        ready_delay_ms: wiring.ready_delay_ms,
-    };
-    let beside = PositioningModule::new(host, control, wiring);
+    let beside = PositioningModule::new(host, control, wiring.clone());
     Ok(Some(ModuleRun::new(beside, &module.folder.name)))
 }

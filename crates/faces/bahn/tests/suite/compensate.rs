@@ -1,4 +1,5 @@
 //! `bahn compensate`: the residual error of machines with pitch error, backlash and thermal drift.
+
 use crate::support::*;
 
 /// The mill with an encoder of 100 µm on the screw of X: pitch error, 12 µm of backlash, and 15 µm of drift in some minutes.

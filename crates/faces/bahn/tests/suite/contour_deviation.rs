@@ -1,4 +1,5 @@
 //! Why the axes left the contour: each cause is provoked on the simulated mill, and the report names it.
+
 use crate::support::{Folder, number};
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! `bahn convert`: programs in another language, with the proof that they do the same.
+
 use std::fs;
 
 use crate::support::{Folder, copy, machines};

@@ -1,4 +1,5 @@
 //! What is said of the spindle, the tool and the place of the cut, in `bahn test` and `bahn run`.
+
 use crate::support::Folder;
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! TCH PROBE 5 to 7 in a test run: a part is machined, digitized, and machined again from its points.
+
 use std::collections::BTreeMap;
 
 use crate::support::*;

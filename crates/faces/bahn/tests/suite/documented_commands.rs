@@ -1,4 +1,5 @@
 //! Every command that README, help texts and the READMEs of machines show is run as it stands there.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,4 +1,5 @@
 //! `bahn run` on the gantry: synchronized axes, a tilted plane, a spindle that leans.
+
 use crate::support::{Folder, assert_near, machines, number};
 
 fn run(folder: &Folder, arguments: &str) -> serde_json::Value {

@@ -1,4 +1,5 @@
 //! What is fitted to a control: terminals, boards, versions, options, software.
+
 use crate::support::Folder;
 use bahn_parameters::ControlModel;
 use serde_json::Value;

@@ -1,5 +1,6 @@
 //! Who asks for JSON gets some, also from a command that refuses what it was given: every command with `--format json`, with an
 //! option that does not exist, and with files that are missing, are a folder, or are no text.
+
 use crate::support::*;
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! `bahn machine`: folders of machines, whole and broken.
+
 use crate::support::Folder;
 
 const MODELS: [&str; 6] = ["tnc151", "tnc155", "tnc360", "tnc407", "tnc415b", "tnc425"];

@@ -1,4 +1,5 @@
 //! The machines under machines/: everything in a folder can be read, and does what it should.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;

@@ -1,4 +1,5 @@
 //! Programs of DIN 66025 in `bahn test` and, on a machine, in `bahn run`.
+
 use std::f64::consts::PI;
 use std::fs;
 

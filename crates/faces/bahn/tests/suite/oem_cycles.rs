@@ -1,5 +1,6 @@
 //! Programs with the later functions in the product: cycles of the machine builder from files, thread cutting, contour
 //! data, surface normals; read, checked, formatted and executed.
+
 use crate::support::Folder;
 
 /// A program with every one of them, and two cycles of the machine builder: 68 in the program memory, 69 in the EPROM.

@@ -1,5 +1,6 @@
 //! `bahn oem`: cycles of the machine builder with their dialogues, and EPROMs with them [000:17691-17984]
 //! [000:11388-11412].
+
 use crate::support::Folder;
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! `bahn run --oscilloscope`: the memory of the control's oscilloscope.
+
 use crate::support::*;
 
 fn dig425(blocks: &str) -> Folder {

@@ -1,4 +1,5 @@
 //! Pallet file and datum tables in the folder of a machine: modules 9090 and 9094 and cycle 7 in the product.
+
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,5 @@
 //! `bahn plc trace` and `diagram` on a machine that runs.
+
 use crate::support::Folder;
 use serde_json::Value;
 

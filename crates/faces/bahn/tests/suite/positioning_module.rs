@@ -1,4 +1,5 @@
 //! `bahn run --with`: the mill with a positioning module beside it.
+
 use crate::support::{Folder, machines};
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! `bahn q`: parameters of a System 900.
+
 use std::path::Path;
 
 use crate::support::{Folder, Run};

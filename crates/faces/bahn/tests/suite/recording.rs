@@ -1,4 +1,5 @@
 //! Everything that can be recorded has the value that it must have.
+
 use crate::support::*;
 
 /// The columns of a recording by their names, without units; what happened is the last one.

@@ -1,4 +1,5 @@
 //! `bahn run`: programs on the shipped machines.
+
 use crate::support::{Folder, Run, machines, number, rows};
 use serde_json::{Value, json};
 

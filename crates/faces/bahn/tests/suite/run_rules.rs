@@ -1,4 +1,5 @@
 //! `bahn run`: what is reported when something is not as it should be, and what goes on beside the run.
+
 use std::path::{Path, PathBuf};
 
 use crate::support::{Folder, Run, number, program};

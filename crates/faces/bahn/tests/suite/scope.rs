@@ -1,4 +1,5 @@
 //! `bahn scope`: summaries and drawings of recordings.
+
 use crate::support::{Folder, number};
 
 /// A ramp of 100 mm/s for a second, then still; the marker is set from 0.4 to 0.7 s.

@@ -1,4 +1,5 @@
 //! Scripts: conditions, times, what goes on after an error, and what the end makes of it all.
+
 use std::path::Path;
 
 use crate::support::*;

@@ -1,4 +1,5 @@
 //! `bahn test` with many programs: which ones, the table, its files, comparisons.
+
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;

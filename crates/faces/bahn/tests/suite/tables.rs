@@ -1,4 +1,5 @@
 //! `bahn table`, and tables of a machine against its parameters.
+
 use crate::support::{Folder, number};
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
 //! `bahn technology`: programs with functions that the path waits for, on the command line.
+
 use std::path::Path;
 
 use crate::support::{Folder, Run, copy};

@@ -1,4 +1,5 @@
 //! `bahn test` on the control of a machine, and with parameters of the command line.
+
 use crate::support::Folder;
 
 /// FN14 shows the texts of the machine: 300 is PLC message 0, 400 dialogue 0 [003:4364-4367].

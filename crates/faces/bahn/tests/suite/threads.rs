@@ -1,4 +1,5 @@
 //! What `bahn run` says of threads: how deep they are, and how far the tool was from its spindle.
+
 use crate::support::{Folder, copy, machines, number, program, rows};
 
 const PITCH: f64 = 1.25;

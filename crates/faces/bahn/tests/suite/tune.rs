@@ -1,4 +1,5 @@
 //! `bahn tune`: the commissioning assistant on three plants.
+
 use crate::support::*;
 use bahn_parameters::{Adjustment, ControlModel, ParameterList};
 

@@ -1,4 +1,5 @@
 //! `bahn tune DIR S`: the ramp of the spindle in a thread, and kv of its orientation.
+
 use crate::support::{Folder, copy, machines, number, program};
 
 /// Threads of another depth, pitch and speed than those of the trial.

@@ -1,4 +1,5 @@
 //! `bahn run` on a machine of two channels: each runs its program, is reported, recorded and drawn.
+
 use std::path::{Path, PathBuf};
 
 use crate::support::Folder;

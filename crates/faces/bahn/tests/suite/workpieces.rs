@@ -1,5 +1,6 @@
 //! The workpieces of the shipped machines that have threads, a touch probe, a tool probe or a cycle of the machine builder:
 //! each runs on its machine to the end, and is what its drawing says.
+
 use crate::support::{Folder, copy, machines, number, rows};
 use serde_json::Value;
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bahn_din::{Span, SpanKind};
 use bahn_text::{Diagnostic, Files, NamedFile};
 
-use crate::language::Token;
+use crate::language::{Mention, Thing, Token, led_to, mentions_of};
 use crate::text::Text;
 use crate::world::World;
 
@@ -86,6 +86,19 @@ impl Marked {
             span: self.text.span(&place),
             ..fault
         }
+    }
+
+    /// A fault of a file of another name that this one calls, where it does so first.
+    pub(crate) fn placed_elsewhere(
+        &self,
+        fault: Diagnostic,
+        name: String,
+        mentions: &[Mention],
+    ) -> Diagnostic {
+        let file = Thing::File(name);
+        let call = mentions_of(mentions, &file).next();
+        let place = call.map_or_else(|| self.line(1), |call| call.range.clone());
+        led_to(fault, self.text.span(&place))
     }
 
     /// All words by kind.

@@ -13,7 +13,7 @@ use bahn_text::Files;
 
 use crate::language::{
     Analysis, Completion, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol, SymbolKind, Thing, Token,
-    led_to, mention_at, mentions_of,
+    mention_at, mentions_of,
 };
 use crate::markdown::Markdown;
 use crate::text::Text;
@@ -146,13 +146,10 @@ impl Analysis for DinProgram {
         let faults = examined.found.into_iter().map(|found| {
             let name = found.program.name().to_string();
             let fault = found.fault.diagnostic(&found.program, &folder.join(&name));
-            if found.program.name() == self.program.name() {
-                return self.marked.placed(fault);
+            match found.program.name() == self.program.name() {
+                true => self.marked.placed(fault),
+                false => self.marked.placed_elsewhere(fault, name, self.mentions()),
             }
-            let file = Thing::File(name);
-            let call = mentions_of(self.mentions(), &file).next();
-            let place = call.map_or_else(|| self.marked.line(1), |call| call.range.clone());
-            led_to(fault, self.text.span(&place))
         });
         Examined {
             faults: faults.collect(),

@@ -13,7 +13,7 @@ use bahn_din::system900::{
 use crate::din::{Beside, Marked};
 use crate::language::{
     Analysis, Completion, CompletionKind, Elsewhere, Examined, Fold, Hover, Mention, Role, Symbol,
-    SymbolKind, Thing, Token, led_to, mention_at, mentions_of,
+    SymbolKind, Thing, Token, mention_at, mentions_of,
 };
 use crate::markdown::Markdown;
 use crate::text::Text;
@@ -165,13 +165,10 @@ impl Analysis for System900Program {
             let fault = found
                 .program
                 .diagnostic(found.severity, &found.fault, &folder.join(&name));
-            if found.program.name() == self.program.name() {
-                return self.marked.placed(fault);
+            match found.program.name() == self.program.name() {
+                true => self.marked.placed(fault),
+                false => self.marked.placed_elsewhere(fault, name, self.mentions()),
             }
-            let file = Thing::File(name);
-            let call = mentions_of(self.mentions(), &file).next();
-            let place = call.map_or_else(|| self.marked.line(1), |call| call.range.clone());
-            led_to(fault, self.marked.text.span(&place))
         });
         Examined {
             faults: faults.collect(),

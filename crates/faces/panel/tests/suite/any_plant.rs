@@ -1,4 +1,5 @@
 //! A plant that is no simulated machine, at the operator's panel: docs/plant.md, "With the panel".
+
 use std::path::Path;
 use std::sync::Arc;
 

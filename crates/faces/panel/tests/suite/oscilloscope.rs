@@ -1,4 +1,5 @@
 //! The oscilloscope at the panel: its main display, a recording that is seen while it goes on, cursors and scales.
+
 use crate::support::Trainee;
 use bahn_panel::{GraphicsView, Screen};
 

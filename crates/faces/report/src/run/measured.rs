@@ -9,6 +9,33 @@ use bahn_tnc::Control;
 use super::deviation::Deviation;
 use super::times::Times;
 
+/// How busy a PLC is: nominal processing time, 100 % are its part of the cycle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PlcLoad {
+    sum: f64,
+    cycles: u64,
+    longest: f64,
+}
+
+impl PlcLoad {
+    /// Takes a contour cycle.
+    pub fn cycle(&mut self, percent: f64) {
+        self.sum += percent;
+        self.cycles += 1;
+        self.longest = self.longest.max(percent);
+    }
+
+    /// Of the longest scan, %.
+    pub fn longest(self) -> f64 {
+        self.longest
+    }
+
+    /// In the mean, %.
+    pub fn mean(self) -> f64 {
+        self.sum / self.cycles.max(1) as f64
+    }
+}
+
 /// What is measured while a program runs.
 pub(super) struct Measured {
     pub deviation: Deviation,
@@ -17,8 +44,7 @@ pub(super) struct Measured {
     pub power_up_us: u64,
     pub reference_us: u64,
     pub program_us: u64,
-    /// Nominal processing time of the PLC, %: sum, over how many cycles, longest.
-    pub plc_percent: (f64, u64, f64),
+    pub plc: PlcLoad,
 }
 
 impl Measured {
@@ -30,18 +56,14 @@ impl Measured {
             power_up_us: 0,
             reference_us: 0,
             program_us: 0,
-            plc_percent: (0.0, 0, 0.0),
+            plc: PlcLoad::default(),
         }
     }
 
     /// Takes a contour cycle; `running` says that a run is on its way.
     pub fn cycle(&mut self, control: &Control, plant: &Machine, phase: Phase, running: bool) {
         let cycle_us = u64::from(control.cycle_us());
-        let percent = control.plc_percent();
-        let (sum, count, longest) = &mut self.plc_percent;
-        *sum += percent;
-        *count += 1;
-        *longest = longest.max(percent);
+        self.plc.cycle(control.plc_percent());
         match phase {
             Phase::PowerUp => self.power_up_us += cycle_us,
             Phase::Reference => self.reference_us += cycle_us,

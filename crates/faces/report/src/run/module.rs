@@ -8,6 +8,7 @@ use bahn_tnc::{AxisSignal, Signal};
 use serde::Serialize;
 
 use super::listed::{Listed, Said};
+use super::measured::PlcLoad;
 use crate::record::tidy;
 use crate::text::list;
 
@@ -26,8 +27,7 @@ pub struct ModuleRun {
     /// When all axes had their references, µs.
     ready_us: Option<u64>,
     cycles: u32,
-    /// Nominal processing time of its PLC, %: sum, over how many cycles, longest.
-    plc_percent: (f64, u64, f64),
+    plc: PlcLoad,
 }
 
 impl ModuleRun {
@@ -41,7 +41,7 @@ impl ModuleRun {
             lags: letters.map(|letter| (letter, 0.0)).collect(),
             ready_us: None,
             cycles: 0,
-            plc_percent: (0.0, 0, 0.0),
+            plc: PlcLoad::default(),
             module,
         }
     }
@@ -63,11 +63,7 @@ impl ModuleRun {
             let lag = control.first().observe(&Signal::Axis(*letter, AxisSignal::Lag));
             *most = most.max(lag.abs());
         }
-        let percent = control.plc_percent();
-        let (sum, count, longest) = &mut self.plc_percent;
-        *sum += percent;
-        *count += 1;
-        *longest = longest.max(percent);
+        self.plc.cycle(control.plc_percent());
         self.cycles = (self.cycles + 1) % LOOK_CYCLES;
         if self.ready_us.is_none() && self.cycles == 0 {
             let all = control.snapshot().axes.iter().all(|axis| axis.referenced);
@@ -93,7 +89,6 @@ impl ModuleRun {
             };
             (*letter, report)
         });
-        let (sum, count, longest) = self.plc_percent;
         let [received, sent] = self.module.characters();
         ModuleReport {
             machine: self.name.clone(),
@@ -101,8 +96,8 @@ impl ModuleRun {
             ready_s: self.ready_us.map(|us| us as f64 * 1e-6),
             axes: axes.collect(),
             characters: Characters { received, sent },
-            plc_max_percent: tidy(longest),
-            plc_mean_percent: tidy(sum / count.max(1) as f64),
+            plc_max_percent: tidy(self.plc.longest()),
+            plc_mean_percent: tidy(self.plc.mean()),
             messages: self.listed.messages.clone(),
         }
     }

@@ -140,7 +140,7 @@ impl RunReport {
         model: ControlModel,
     ) -> RunReport {
         let seconds = |us: u64| us as f64 * 1e-6;
-        let (sum, count, longest) = session.measured.plc_percent;
+        let plc = session.measured.plc;
         let cause = session.measured.deviation.cause;
         let first = session.host.control().first();
         RunReport {
@@ -158,8 +158,8 @@ impl RunReport {
             threads: named(&session.measured.threads, first),
             threads_not_listed: session.measured.threads.not_listed,
             plc: PlcReport {
-                max_percent: tidy(longest),
-                mean_percent: tidy(sum / count.max(1) as f64),
+                max_percent: tidy(plc.longest()),
+                mean_percent: tidy(plc.mean()),
             },
             messages: session.listed.messages.clone(),
             confirmed: session.listed.confirmed.clone(),

@@ -1,4 +1,5 @@
 //! Functions that are output ahead, and those with a time stamp: rows T13 to T16 of the acceptance.
+
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::{EventKind, Report};
 

@@ -1,4 +1,5 @@
 //! Whatever a program says: its run ends, with a report that holds together.
+
 use crate::common::{Asked, Bench};
 use bahn_technology::EventKind;
 use proptest::prelude::*;

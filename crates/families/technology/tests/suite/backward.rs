@@ -1,4 +1,5 @@
 //! Functions that are output ahead, in backward motion and forward again.
+
 use crate::common::{A, Asked, Bench, T, at, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report};

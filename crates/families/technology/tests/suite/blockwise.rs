@@ -1,4 +1,5 @@
 //! Functions that are output and waited for at block limits: rows T1 to T12 of the acceptance.
+
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::EventKind;
 

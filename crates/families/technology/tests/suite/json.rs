@@ -1,4 +1,5 @@
 //! The report as JSON, key by key.
+
 use crate::common::Bench;
 use serde_json::{Value, json};
 

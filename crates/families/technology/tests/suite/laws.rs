@@ -1,5 +1,6 @@
 //! Laws of random programs with random acknowledgements: no gate opens without its acknowledgement, none stays shut with
 //! it, and the order of output is that of the program in every range, but for what is output ahead.
+
 use std::collections::HashMap;
 
 use crate::common::{Asked, Bench, T};

@@ -1,6 +1,7 @@
 //! MET_MOS keeps its lead: the time between its output and the path at its place [004:87-90].
 //!
 //! Beside it stands a MOS_TS function, whose time stamp tells when the path was there [004:93].
+
 use std::fmt::Write as _;
 
 use crate::common::{A, Asked, Bench, T, at, x};

@@ -1,4 +1,5 @@
 //! Lists in all the spellings of the manual [004:57] [004:111-126] [004:162-174] [004:192-234].
+
 use bahn_technology::{ChannelList, ChannelSettings, Synch, Synchronisation};
 
 fn settings(text: &str) -> ChannelSettings {

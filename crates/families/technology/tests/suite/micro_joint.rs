@@ -1,4 +1,5 @@
 //! Micro Joints: rows T27 to T34 and T38 of the acceptance.
+
 use crate::common::{A, Asked, Bench, at, x, y};
 use bahn_technology::{Event, EventKind, Report};
 

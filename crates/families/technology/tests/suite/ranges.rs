@@ -1,4 +1,5 @@
 //! Targets, values, spindles and lists of active functions: rows T7, T17 to T26 and T35 to T37 of the acceptance.
+
 use crate::common::{Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report, Value};

@@ -1,4 +1,5 @@
 //! What the script does beside acknowledging, several programs, and how runs end.
+
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{ChannelList, EventKind, Report, Script};

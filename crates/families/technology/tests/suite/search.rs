@@ -1,4 +1,5 @@
 //! Block search: a run that begins at a block, and what it says of the functions before that.
+
 use crate::common::{Asked, Bench, at, ramp_s, when, x};
 use bahn_path::Axis;
 use bahn_technology::{EventKind, Report, Value};

@@ -1,4 +1,5 @@
 //! Single block: the path stops at the end of each programmed block with a motion until the operator starts the next one.
+
 use crate::common::{A, Asked, Bench, RAPID, T, at, ramp_s, when, x};
 use bahn_technology::{EventKind, Report};
 

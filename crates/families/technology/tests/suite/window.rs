@@ -1,4 +1,5 @@
 //! A PLC that serves the ranges in its window of bytes.
+
 use crate::common::{Bench, T};
 use bahn_technology::{EventKind, PlcMemory, Report, WINDOW_BYTES};
 

@@ -1,5 +1,6 @@
 //! Monitoring of the axes: which message, what the machine does, what clears it [000:5160-5318]
 //! [000:3288-3328].
+
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_tnc::RunState;

@@ -1,4 +1,5 @@
 //! What goes on beside the run: test run, what survives power-off.
+
 use crate::support::*;
 use bahn_tnc::{RunState, TestState};
 

@@ -1,4 +1,5 @@
 //! Two channels on one machine: one clock, one PLC, one EMERGENCY STOP; each with its axes, its panel, its program.
+
 use std::sync::Arc;
 
 use crate::support::bench::{bench, close, fourth};

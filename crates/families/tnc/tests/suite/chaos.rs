@@ -1,6 +1,7 @@
 //! Deterministic simulation with faults: random keys, commands, overrides and faults of the machine in any
 //! order. Whatever comes, nothing panics, positions stay numbers, voltages stay within 10 V; without faults no
 //! axis passes its software limits, and after EMERGENCY STOP all comes to rest.
+
 use crate::support::*;
 use bahn_tnc::{Command, Mode};
 

@@ -1,4 +1,5 @@
 //! Non-linear axis errors: the manual's tables on the bench [000:3785-3865].
+
 use crate::support::bench::*;
 use crate::support::*;
 use bahn_tnc::{

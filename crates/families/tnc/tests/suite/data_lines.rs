@@ -1,4 +1,5 @@
 //! The PLC at its data interfaces: modules 9100 to 9107 with a line, 9110 and 9111 with a host [000:15587-15905].
+
 use crate::stand::*;
 use crate::support::*;
 use bahn_plc::HostMessage;

@@ -1,4 +1,5 @@
 //! A program that is executed while it is transferred: however its text comes, the path is that of the whole program.
+
 use crate::support::*;
 use bahn_parameters::ControlModel;
 use bahn_path::{Axis, PathElement};

@@ -1,4 +1,5 @@
 //! What the operator enters beside a run: AXIS LIMIT, Q parameters, elements of tables; and what the status display shows
+
 //! of transformations.
 
 use crate::stand::*;

@@ -1,4 +1,5 @@
 //! Single rules of program run: messages with their block, refusals, stops, what the PLC learns.
+
 use crate::stand::*;
 use crate::support::*;
 use bahn_tnc::RunState;

@@ -1,4 +1,5 @@
 //! The functions of the TOUCH PROBE menu in MANUAL and HANDWHEEL [003:1217-1512].
+
 use crate::stand::*;
 use crate::support::*;
 use bahn_path::Axis;

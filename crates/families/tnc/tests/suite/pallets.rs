@@ -1,5 +1,6 @@
 //! Module 9090 on the running control: a line of the pallet file selects program and datum table, and modules 9092 to
 //! 9094 and cycle 7 work with that table [000:15328-15545].
+
 use crate::stand::*;
 use crate::support::*;
 use bahn_plc::{MemoryTable, PalletLine, TableFile, TableKind};

@@ -1,5 +1,6 @@
 //! Between NC and PLC: read-in inhibit, queues, the free analogue output, modules of status and spindle, tool
 //! changes that are broken off.
+
 use crate::stand::*;
 use crate::support::*;
 use bahn_tnc::Signal;

@@ -1,4 +1,5 @@
 //! Power-on, EMERGENCY STOP, reference run.
+
 use crate::support::*;
 use bahn_tnc::Mode;
 

@@ -1,4 +1,5 @@
 //! Part programs are read on another thread: the path is the same, and what comes meanwhile is not lost.
+
 use crate::support::*;
 use bahn_tnc::{ReadAhead, RunState};
 

@@ -1,4 +1,5 @@
 //! Module 9171 orients the spindle: its directions, and what it refuses [000:16120-16160].
+
 use crate::stand::*;
 use crate::support::Rig;
 

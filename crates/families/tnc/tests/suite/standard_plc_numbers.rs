@@ -1,4 +1,5 @@
 //! Numbers of machine parameters that a PLC program of a TNC 151 or 155 reads [001:1826-1841].
+
 use crate::terminals::terminals;
 
 /// MP158, MP249 and MP250 are the markers M2192 to M2239, MP209 to MP212 words with M3200 to M3263; MP126 to MP156 are the positions

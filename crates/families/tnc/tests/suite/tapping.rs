@@ -1,4 +1,5 @@
 //! Tapping on the mill: cycles 17 and 18, in which Z follows the spindle, and cycle 2 [000:6047-6145].
+
 use crate::support::*;
 use bahn_exchange::Bit;
 use bahn_machine::Machine;

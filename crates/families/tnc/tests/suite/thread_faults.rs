@@ -1,4 +1,5 @@
 //! Threads in which something fails: what the tool axis, its spindle and the path do then [000:6115-6139].
+
 use crate::support::*;
 use bahn_tnc::{RunState, Signal};
 

@@ -1,5 +1,6 @@
 //! How deep a thread is, and how well the tool axis follows the spindle: what the plant does, not what the encoders say
 //! [000:6047-6145].
+
 use crate::support::*;
 use bahn_exchange::Bit;
 use bahn_parameters::{ControlModel, ParameterList};

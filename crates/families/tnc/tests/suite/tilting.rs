@@ -1,4 +1,5 @@
 //! Swivel axes on a machine: cycle 19 and M114 with a head that swivels about B.
+
 use crate::support::*;
 use bahn_tnc::RunState;
 

@@ -1,4 +1,5 @@
 //! Tools are measured with the tool probe of the mill: TCH PROBE 31 and 32 [000:7960-8058].
+
 use crate::support::*;
 use bahn_path::ToolShape;
 use bahn_plc::TableKind;

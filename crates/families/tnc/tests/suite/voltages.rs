@@ -1,4 +1,5 @@
 //! Output S for lasers and water jets: M200 to M204 with MP3011 = 3 [000:9841-9909].
+
 use crate::stand::*;
 use crate::support::Rig;
 use bahn_tnc::RunState;

@@ -1,4 +1,5 @@
 //! A contour that takes long to compute does not hold the machine: whoever drives it computes beside.
+
 use crate::support::*;
 use bahn_tnc::RunState;
 

@@ -1,4 +1,5 @@
 //! Every error of the compiler, with its line; several in one pass.
+
 use crate::common::compile;
 use bahn_parameters::ControlModel;
 use bahn_plc::{Compilation, Memories, MemoryFiles, Options, ProgramMemory};

@@ -1,4 +1,5 @@
 //! Jumps, modules, structures, tables, submit jobs, timers, counters, edges; run-time errors.
+
 use crate::common::{Bench, compile, example};
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{InterfaceUser, PlcError, Start, TestNc};

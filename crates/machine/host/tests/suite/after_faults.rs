@@ -1,4 +1,5 @@
 //! What the fault campaign found, each as the few things that lead to it.
+
 use crate::support::{host, machine, mill, old_mill, seconds};
 use bahn_host::{Action, Host, PowerOn, Source};
 use bahn_parameters::fault::FaultId;

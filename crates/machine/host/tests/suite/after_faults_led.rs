@@ -1,4 +1,5 @@
 //! What the fault campaign found where the machine leads the path: a probe, or a spindle.
+
 use crate::support::{host, machine, mill, seconds};
 use bahn_exchange::signal;
 use bahn_host::{Action, Host, PowerOn, Source};

@@ -1,4 +1,5 @@
 //! Elements of the path are handed out when they are executed, each once and in their order.
+
 use bahn_host::{Action, Answer, ElementId, ExecutedPath, Host, Source};
 use bahn_tnc::{Command, RunState};
 

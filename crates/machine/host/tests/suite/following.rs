@@ -1,4 +1,5 @@
 //! Orders, notices and snapshots of a machine that is on.
+
 use crate::support::*;
 use bahn_host::{
     Action, Answer, Attendance, Clock, Job, LoadedMachine, Next, Notice, Operator, PowerOn, Source, When,

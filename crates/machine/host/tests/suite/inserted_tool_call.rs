@@ -1,4 +1,5 @@
 //! Module 9150 while a program of DIN 66025 runs, which has no tools.
+
 use std::sync::Arc;
 
 use crate::support::*;

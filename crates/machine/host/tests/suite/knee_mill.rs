@@ -1,4 +1,5 @@
 //! The reference run of the knee mill with a TNC 155, by its cams [001:951-995].
+
 use crate::support::*;
 use bahn_host::{Host, LoadedMachine, PowerOn};
 use bahn_tnc::Mode;

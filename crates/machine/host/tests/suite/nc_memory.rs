@@ -1,5 +1,6 @@
 //! Whatever lies in the folder of programs, the machine can be switched on: a file that cannot be used is said at power-on, and
 //! refused by what uses it.
+
 use std::fs;
 
 use crate::support::*;

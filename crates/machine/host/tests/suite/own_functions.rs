@@ -1,4 +1,5 @@
 //! `[[function]]` of machine.toml: M functions with a synchronisation of the machine builder's own.
+
 use crate::support::*;
 use bahn_host::LoadedMachine;
 use bahn_parameters::own_functions::OwnFunction;

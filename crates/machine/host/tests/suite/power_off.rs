@@ -1,5 +1,6 @@
 //! The process ends at any moment of a tool change and begins again: the simulated mechanics stand where they stood, and the PLC
 //! program brings every tool to where the control has it.
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
 //! Any moment of a run is reached again, to the bit.
+
 use crate::support::*;
 use bahn_host::{Action, Answer, Host, HostError, Log, Next, Notice, PowerOn, Sink, Source, Timeline, When};
 use bahn_tnc::{Command, Signal};

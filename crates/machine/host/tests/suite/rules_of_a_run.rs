@@ -1,4 +1,5 @@
 //! Machine parameters that are changed while a program of DIN 66025 runs.
+
 use std::sync::Arc;
 
 use crate::support::*;

@@ -1,4 +1,5 @@
 //! Scripts on the whole machine: power, wires, faults, parameters and operands of the running control, every command.
+
 use std::path::Path;
 
 use crate::support::*;

@@ -1,4 +1,5 @@
 //! `plc = "standard"` and MP77: which PLC program a TNC 155 runs; the knee mill with the standard one.
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::support::*;

@@ -1,5 +1,6 @@
 //! The mill with its PLC program in the form of the TNC 355, machines/mill/plc355: T, S and M functions, gears, PLC
 //! positioning, orientation, datum shift and Q parameters of a part program, all in markers.
+
 use crate::support::*;
 use bahn_host::{Host, PowerOn};
 

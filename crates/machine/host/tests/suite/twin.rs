@@ -1,4 +1,5 @@
 //! The twin: two channels on one machine, loaded from its folder, driven, stopped, handed an axis, kept over power-off.
+
 use std::sync::{Arc, Mutex};
 
 use crate::support::*;

@@ -1,4 +1,5 @@
 //! Feed axes: drives, mechanics, encoders, switches.
+
 use crate::common::{BASE, IDEAL_X, input, milliseconds, running};
 use bahn_servo::Encoder;
 

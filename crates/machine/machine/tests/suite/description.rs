@@ -1,4 +1,5 @@
 //! The description of a machine is read or refused, fault by fault.
+
 use crate::common::{BASE, IDEAL_X};
 use bahn_machine::Machine;
 

@@ -1,4 +1,5 @@
 //! Axes whose speed loop the control closes (MP1900, TNC 425): servo and current drive together, step by step.
+
 use crate::common::BASE;
 use bahn_machine::Machine;
 use bahn_parameters::fault::FaultId;

@@ -1,4 +1,5 @@
 //! Laws that hold for every machine and every course of events.
+
 use crate::common::{BASE, milliseconds, running};
 use bahn_machine::{Event, Machine, MachineFolder};
 use bahn_servo::Encoder;

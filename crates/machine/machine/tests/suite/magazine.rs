@@ -1,4 +1,5 @@
 //! The tool magazine: chain, shuttle and arm, and what goes wrong with them.
+
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 use bahn_machine::Machine;
 

@@ -1,5 +1,6 @@
 //! The PLC program of `machines/mill` moves the plant beside it, with a stand-in for the NC: inputs and
 //! outputs of both fit each other, and every wait of the program ends.
+
 use bahn_exchange::{Bit, BitArea, Exchange, Number};
 use bahn_machine::Machine;
 use bahn_parameters::{ControlModel, ParameterList};

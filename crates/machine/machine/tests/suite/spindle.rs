@@ -1,4 +1,5 @@
 //! The main spindle.
+
 use crate::common::{BASE, IDEAL_X, input, milliseconds, outputs, running};
 use bahn_machine::Machine;
 

@@ -1,4 +1,5 @@
 //! Outputs as the terminals of a control have them: their supply, and bipolar ones.
+
 use crate::common::{IDEAL_X, input, machine, outputs};
 
 /// The plant of the other tests, without `switched_outputs`.

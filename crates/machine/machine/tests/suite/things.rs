@@ -1,4 +1,5 @@
 //! Panel, EMERGENCY STOP chain, things with two states, probe, analogue inputs, events.
+
 use crate::common::{BASE, IDEAL_X, input, machine, milliseconds, outputs, running};
 use bahn_machine::{Event, EventError, Machine};
 use bahn_servo::{Commands, Measured, Plant, Step};

@@ -1,4 +1,5 @@
 //! Machine parameters by their numbers: each reaches the getter that is meant.
+
 use std::collections::BTreeMap;
 
 use bahn_parameters::{ControlModel, Definition, ParameterId, ParameterList};

@@ -1,4 +1,5 @@
 //! The machine geometry of MP7510 to MP7592: the chains of the manual [000:4303-4437].
+
 use bahn_parameters::{ControlModel, ParameterList};
 use bahn_path::{Axis, Position};
 

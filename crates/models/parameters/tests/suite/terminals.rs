@@ -1,4 +1,5 @@
 //! The terminals against the tables of the manuals.
+
 use std::collections::BTreeSet;
 
 use bahn_parameters::ControlModel::{self, Tnc151b, Tnc151q, Tnc155fr, Tnc155w, Tnc407, Tnc415b};

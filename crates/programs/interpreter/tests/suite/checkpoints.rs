@@ -1,4 +1,5 @@
 //! States to go back to: kept where something is on its way, and nowhere else.
+
 use std::sync::Arc;
 
 use bahn_interpreter::{Interpreter, Message, NoPrograms, STATE_COST, Settings};

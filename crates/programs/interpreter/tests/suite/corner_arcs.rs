@@ -1,4 +1,5 @@
 //! M112: arcs at the corners of uncompensated lines, and M124: points that are left out for them [000:5128-5158].
+
 use crate::support::*;
 use bahn_path::{Axis, Curve, Plane};
 

@@ -1,5 +1,6 @@
 //! Cycle 27 CYLINDER SURFACE. What the tool does to the workpiece is computed here by rotation matrices: where the tip is
 //! on a table that has turned.
+
 use crate::support::*;
 use bahn_parameters::MessageId::{
     self, BlockNotKnown, CyclIncomplete, EntryValueIncorrect, PlaneWronglyDefined, WrongAxisProgrammed,

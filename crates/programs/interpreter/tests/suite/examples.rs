@@ -1,4 +1,5 @@
 //! The shipped example programs run to their end and mill what they say.
+
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::PathBuf;

@@ -1,4 +1,5 @@
 //! Programs that are executed while they are still being transferred.
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

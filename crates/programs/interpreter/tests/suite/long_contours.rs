@@ -1,4 +1,5 @@
 //! SL contours that take long to compute, or cannot be computed at all.
+
 use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,5 @@
 //! Swivel axes: cycle 19, M114 to M117, M126 and M127.
+
 use std::sync::Arc;
 
 use crate::support::*;

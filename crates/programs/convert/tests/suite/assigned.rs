@@ -1,10 +1,8 @@
 //! Cycles whose words are values of Q parameters: those of the machine builder, which DIN/ISO calls by D, and contour data.
 
-mod support;
-
+use crate::support::*;
 use bahn_convert::Language;
 use bahn_parameters::ControlModel;
-use support::*;
 
 /// The definition of the bolt hole circle is the same in both languages as the manual prints it [000:17958-17962]
 /// [000:17982], and the run calls the cycle with the same values.

@@ -1,5 +1,4 @@
 //! What holds for any data file.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
 use std::time::{Duration, Instant};
 

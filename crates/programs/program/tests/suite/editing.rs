@@ -1,8 +1,6 @@
 //! Editing: a version after any edits is the program that its whole text gives.
 
 #[allow(dead_code, reason = "damage is for files, not for blocks")]
-mod generate;
-
 use bahn_parameters::{ControlModel, MessageId};
 use bahn_program::{Block, Edit, EditError, FormatOptions, Operation, Program, format_block};
 use proptest::prelude::*;
@@ -59,10 +57,10 @@ enum Random {
 }
 
 fn text() -> impl Strategy<Value = String> {
-    let block = generate::block().prop_map(|block| format_block(&block, FormatOptions::default()));
+    let block = crate::generate::block().prop_map(|block| format_block(&block, FormatOptions::default()));
     prop_oneof![
         6 => block,
-        1 => prop::collection::vec(generate::fragment(), 0..12).prop_map(|words| words.concat()),
+        1 => prop::collection::vec(crate::generate::fragment(), 0..12).prop_map(|words| words.concat()),
         1 => prop::sample::select(vec![
             "; a ~", "L X+1 ~", "12 ; b ~\n 13 L X+2", "~", "L X+1 ~\n Y+2", "; ~~~", "LBL 1", "LBL 2", "CALL LBL 2",
             "END PGM 1 MM", "BEGIN PGM 1 MM", "\n\nL Y+1\n\n", "", "%5 G71",

@@ -1,5 +1,4 @@
 //! Programs of DIN 66025 as text: their blocks and numbers, and why the control's own languages do not execute them.
-#![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 
 use bahn_parameters::MessageId;
 use bahn_program::{DinLanguage, Operation, Program};

@@ -1,9 +1,7 @@
 //! What DIN/ISO says in another way than plain language.
 
-mod support;
-
+use crate::support::*;
 use bahn_convert::{Language, Options, convert};
-use support::*;
 
 /// A block of the TNC 151/155 has 64 characters: a longer comment goes on in the next block, word by word, and nothing of
 /// it is lost. How many went on is said.

@@ -1,14 +1,12 @@
 //! What DIN/ISO has no blocks for is said by its path; what no path says is refused.
 
-mod support;
-
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::support::*;
 use bahn_convert::{Language, prove_unrolled, unroll};
 use bahn_parameters::ControlModel;
 use bahn_program::Program;
-use support::*;
 
 const HEAD: &str = "BEGIN PGM A MM\nBLK FORM 0.1 Z X+0 Y+0 Z-20\nBLK FORM 0.2 X+100 Y+100 Z+0\nTOOL DEF 1 L+0 R+5\n\
                     TOOL CALL 1 Z S1000\nL X+0 Y+0 Z+2 R0 FMAX M3\n";

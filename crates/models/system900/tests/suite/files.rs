@@ -1,10 +1,9 @@
 //! Data files: what is read, what is refused and where, what is written.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
 use bahn_system900::{Change, DataFile, Memory, Name};
 use bahn_text::Severity;
 
-const SAMPLE: &str = include_str!("data/two-channels.q");
+const SAMPLE: &str = include_str!("../data/two-channels.q");
 
 fn number(memory: &Memory, name: &str) -> Option<f64> {
     memory.cell(name.parse().unwrap()).unwrap().number()

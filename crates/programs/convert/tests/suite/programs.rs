@@ -1,10 +1,8 @@
 //! Every program of the repository in plain language, to DIN/ISO and back, has the same path.
 
-mod support;
-
+use crate::support::*;
 use bahn_parameters::ControlModel;
 use bahn_program::Program;
-use support::*;
 
 /// A circle without an end ends where it began: G03 with both axes of its plane, 0 farther on. In the plane of Y as the tool axis
 /// these are Z and X.

@@ -1,5 +1,4 @@
 //! System and channel parameters: where they lie, what they hold.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
 use bahn_system900::{Memory, Name, Place, SpaceError, Status, Value, ValueError};
 

@@ -1,14 +1,12 @@
 //! Random programs: to the other language and back they have the same operations and the same path.
 
-mod support;
-
+use crate::support::*;
 use bahn_convert::Language;
 use bahn_interpreter::Settings;
 use bahn_parameters::ControlModel;
 use bahn_path::Axis;
 use bahn_program::{CycleWord, Operation, Program};
 use proptest::prelude::*;
-use support::*;
 
 const HEAD: &str = "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+3\nTOOL CALL 1 Z S1000\nFN0: Q1 = +12.5\nCC X+20 Y+15\n\
                     L X+0 Y+0 Z+20 R0 F500 M3\n";

@@ -1,18 +1,10 @@
 //! Laws of DIN/ISO: the listing of a program is the program again, and what is wrong is said where it stands.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a helper that panics fails its test"
-)]
-
-mod laws;
-
+use crate::laws::check_listings;
 use bahn_parameters::ControlModel;
 use bahn_parameters::MessageId::{self, *};
 use bahn_path::Axis;
 use bahn_program::*;
-use laws::check_listings;
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -131,7 +123,7 @@ fn good() -> impl Strategy<Value = String> {
 }
 
 /// Blocks that are complete, each with what it is written like.
-const COMPLETE: &str = include_str!("data/complete-iso.txt");
+const COMPLETE: &str = include_str!("../data/complete-iso.txt");
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]

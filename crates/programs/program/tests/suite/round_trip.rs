@@ -1,12 +1,10 @@
 //! Laws of listings: reading one gives the same blocks, writing it again the same text, for every kind of
+
 //! block and for any bytes.
 
-mod generate;
-mod laws;
-
+use crate::laws::check_listings;
 use bahn_parameters::ControlModel;
 use bahn_program::{FormatOptions, Program, format_block};
-use laws::check_listings;
 use proptest::prelude::*;
 
 const POINT: FormatOptions = FormatOptions {
@@ -32,7 +30,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
-    fn every_block_reads_back(block in generate::block()) {
+    fn every_block_reads_back(block in crate::generate::block()) {
         for options in [POINT, COMMA] {
             let text = format_block(&block, options);
             let program = read(format!("BEGIN PGM 1 MM\n{text}\nEND PGM 1 MM"));
@@ -42,7 +40,7 @@ proptest! {
     }
 
     #[test]
-    fn every_program_keeps_the_laws(all in prop::collection::vec(generate::block(), 0..40)) {
+    fn every_program_keeps_the_laws(all in prop::collection::vec(crate::generate::block(), 0..40)) {
         let text: String = all.iter().map(|block| format_block(block, POINT) + "\n").collect();
         check_laws(text.as_bytes());
     }
@@ -53,7 +51,7 @@ proptest! {
     }
 
     #[test]
-    fn any_words_keep_the_laws(words in prop::collection::vec(generate::fragment(), 0..80)) {
+    fn any_words_keep_the_laws(words in prop::collection::vec(crate::generate::fragment(), 0..80)) {
         check_laws(words.concat().as_bytes());
     }
 
@@ -65,8 +63,8 @@ proptest! {
 
     #[test]
     fn damaged_programs_keep_the_laws(
-        all in prop::collection::vec(generate::block(), 1..12),
-        damages in prop::collection::vec((any::<prop::sample::Index>(), generate::damage()), 1..8),
+        all in prop::collection::vec(crate::generate::block(), 1..12),
+        damages in prop::collection::vec((any::<prop::sample::Index>(), crate::generate::damage()), 1..8),
     ) {
         let text: String = all.iter().map(|block| format_block(block, POINT) + "\n").collect();
         let mut bytes = text.into_bytes();

@@ -1,5 +1,4 @@
 //! Zero points, tools and M functions: where the manual prints them.
-#![allow(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
 use bahn_system900::{Acts, DataFile, MFunction, Tools, ZeroPoints, m_number};
 

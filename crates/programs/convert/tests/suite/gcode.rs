@@ -1,14 +1,12 @@
 //! What a program for LinuxCNC says, line by line.
 
-mod support;
-
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use crate::support::*;
 use bahn_convert::{Language, gcode as linuxcnc};
 use bahn_parameters::ControlModel;
 use bahn_path::{Axis, Position};
-use support::*;
 
 /// The lines of the text without comments, after its first four, and the reasons of what is refused.
 fn lines(blocks: &str) -> (Vec<String>, Vec<String>) {

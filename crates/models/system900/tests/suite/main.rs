@@ -1,0 +1,14 @@
+//! The tests of this room as one program: what they share is built and linked once.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "what fails in a helper fails the test"
+)]
+
+mod checks;
+mod files;
+mod laws;
+mod layout;
+mod memory;
+mod table;
