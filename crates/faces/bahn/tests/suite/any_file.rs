@@ -1,5 +1,4 @@
 //! Whatever stands in the files of a machine: it is read, or refused with its place. The targets under `fuzz/`
-
 //! try the same for longer.
 
 use bahn_machine::{Machine, MachineFolder};

@@ -1,5 +1,4 @@
 //! What is done by hand: the touch probe menu, the handwheel, M and S, Q parameters of an interrupted run; and the flags
-
 //! of the status display.
 
 use crate::support::Trainee;

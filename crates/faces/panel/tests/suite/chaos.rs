@@ -1,5 +1,4 @@
 //! Random inputs by seed: keys, axes, faults and repairs, power, the past and its branches. Nothing panics, the time line
-
 //! stays in order, and the session comes out the same when it is seen again.
 
 use crate::support::Trainee;

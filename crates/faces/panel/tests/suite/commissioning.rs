@@ -1,5 +1,4 @@
 //! A list of machine parameters that is empty or has faults is presented when the control is switched on; several lists,
-
 //! their transfer, and everything of the machine as one file [000:463-467] [000:10007-10074].
 
 use std::path::Path;

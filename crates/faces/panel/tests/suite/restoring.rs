@@ -1,5 +1,4 @@
 //! RESTORE DATA and commissioning where something fails: the machine stays on, and what it keeps is kept
-
 //! [000:463-467] [000:10011].
 
 use crate::support::Trainee;

@@ -1,5 +1,4 @@
 //! The "control is ready" circuit: test at power-on, EMERGENCY STOP from outside [000:6149-6228]
-
 //! [000:7033-7040].
 
 use crate::support::bench::*;

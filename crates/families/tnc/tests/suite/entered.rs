@@ -1,5 +1,4 @@
 //! What the operator enters beside a run: AXIS LIMIT, Q parameters, elements of tables; and what the status display shows
-
 //! of transformations.
 
 use crate::stand::*;

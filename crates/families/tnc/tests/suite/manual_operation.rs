@@ -1,5 +1,4 @@
 //! MANUAL OPERATION: direction keys, rapid traverse, overrides, limits and ranges, datum, M and S
-
 //! [000:7539-7611] [000:3436-3561] [003:1031-1191].
 
 use crate::support::bench::*;

@@ -1,5 +1,4 @@
 //! Messages, simulated keys, markers of input edges, faults of the PLC program [000:6619-6649]
-
 //! [000:7309-7440] [000:11870-11892].
 
 use crate::support::bench::*;

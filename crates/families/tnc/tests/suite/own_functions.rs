@@ -1,5 +1,4 @@
 //! M functions that the machine builder synchronises as on a TF5200: M40 goes out where its type says, and the path
-
 //! waits only where it has to [004:54-90].
 
 use crate::stand::*;

@@ -1,5 +1,4 @@
 //! Data between program and PLC: FN14, FN15, FN19, Q100 to Q107, datum correction, PLC positioning, module
-
 //! 9150, inch programs.
 
 use crate::stand::*;

@@ -1,5 +1,4 @@
 //! A block that is refused is refused whole: tool, length and axis stay as they were, and what comes after it in the program is
-
 //! not executed. The run goes on with that block again, or elsewhere, from where the axes are.
 
 use crate::stand::*;

@@ -1,5 +1,4 @@
 //! PNT: in POSITIONING WITH MDI the machine moves in the direction in which the stylus of a TM 110 is deflected
-
 //! [000:7907].
 
 use crate::stand::*;

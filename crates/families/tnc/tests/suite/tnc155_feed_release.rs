@@ -1,5 +1,4 @@
 //! Feed rate release E18 of a TNC 151/155: opening it ramps the feed to zero with MP54, closing it lets the movement go
-
 //! on [001:509-516].
 
 use crate::support::bench::close;

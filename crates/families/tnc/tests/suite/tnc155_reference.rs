@@ -1,5 +1,4 @@
 //! The reference run of a TNC 151/155: a mark counts under the closed end cam where the pulse is not inhibited
-
 //! [001:951-995].
 
 use crate::support::bench::{TABLE, close};

@@ -1,5 +1,4 @@
 //! Switch-on of a TNC 151/155: the words of its EMERGENCY STOP test [001:927-933], its memory test [001:2369-2371] and its
-
 //! empty list [001:2483-2519].
 
 use crate::support::bench::bench;

@@ -1,5 +1,4 @@
 //! Lubrication, lag tracking, offset adjustment, changed machine parameters [000:3565-3620]
-
 //! [000:3900-3929] [000:5002-5072].
 
 use crate::support::bench::*;

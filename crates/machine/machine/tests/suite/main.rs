@@ -12,6 +12,7 @@ mod common;
 mod axes;
 mod description;
 mod digital;
+mod interlock;
 mod laws;
 mod magazine;
 mod mill;

@@ -2,7 +2,6 @@
 //!
 //! The error of a height map: a column counts whole or not at all, and only columns on the outline are
 //! wrong, each by half a column at most, with either sign. So an outline of length `p` errs by less
-
 //! than `p * resolution / 2` times the depth.
 
 use std::f64::consts::PI;

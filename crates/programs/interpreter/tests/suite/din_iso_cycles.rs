@@ -1,5 +1,4 @@
 //! Cycles of DIN/ISO that need more than a program: tables, contours, swivel axes, cycles of the machine builder. Each does what
-
 //! it does in plain language.
 
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! Messages of contours, compensation and cycles, raised by a small program at the block that causes them
-
 //! [003:7889-8033].
 
 use crate::cases::{TOOL, check, check_with_tool};

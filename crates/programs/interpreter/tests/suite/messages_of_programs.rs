@@ -1,5 +1,4 @@
 //! Messages of program flow, input values and calculations, raised by a small program at the block that
-
 //! causes them [003:7866-8033].
 
 use crate::cases::{TOOL, check, check_with_tool, check_with_tool_on};

@@ -1,5 +1,4 @@
 //! Path programs of the TNC 360 manual: straight lines, arcs, roundings, polar coordinates, helix. The tool
-
 //! radius is compensated; expected tool-centre paths follow from the contour by hand.
 
 use std::f64::consts::{PI, SQRT_2};

@@ -1,7 +1,6 @@
 //! What programs are read as where their writing leaves a choice: blanks, tools, radii.
 //!
 //! Decision: A subprogram within another one: the LBL 0 that is reached leads back, one that is jumped over does
-
 //! nothing
 
 use crate::support::*;

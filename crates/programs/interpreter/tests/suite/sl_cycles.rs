@@ -1,5 +1,4 @@
 //! SL cycles: pockets and islands superimposed. Expected areas are those of the contours, less what a round
-
 //! tool cannot reach in corners.
 
 use std::f64::consts::PI;

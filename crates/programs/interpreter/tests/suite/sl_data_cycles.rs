@@ -1,6 +1,5 @@
 //! SL cycles with contour data (20 to 25): a square-cornered pocket with an island, and a contour train. Expected
 //! areas are those of the contours less what a round tool leaves in inside corners; expected points are computed by
-
 //! hand.
 
 use std::f64::consts::PI;

@@ -1,5 +1,4 @@
 //! LN: lines with the normal of the surface. The tool in the spindle touches the surface at the same point as the one
-
 //! that the program was computed with. Expected positions are those of a tool of its own radii.
 
 use crate::support::*;

@@ -1,5 +1,4 @@
 //! Laws of listings: reading one gives the same blocks, writing it again the same text, for every kind of
-
 //! block and for any bytes.
 
 use crate::laws::check_listings;

@@ -1,5 +1,4 @@
 //! Two machines in each other's EMERGENCY STOP chain [000:18093-18099].
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use bahn_machine::Machine;
 use bahn_servo::INPUTS;
