@@ -113,15 +113,15 @@ fn shipped_for(
     let is_meant = |shipped: &&bahn_machines::ShippedMachine| {
         shipped.models.contains(&model.family().id()) && name.is_none_or(|name| shipped.name == name)
     };
-    let shipped = bahn_machines::ALL.iter().find(is_meant);
+    let all = || bahn_machines::ALL.iter().chain(&bahn_machines::MODULES);
+    let shipped = all().find(is_meant);
     let own = shipped.and_then(|shipped| shipped.models.first()?.parse().ok());
     shipped.copied().zip(own).ok_or_else(|| {
         let named = name.map_or(String::new(), |name| format!(" `{name}`"));
-        let names =
-            bahn_machines::ALL.map(|shipped| format!("{} ({})", shipped.name, shipped.models.join(", ")));
+        let names = all().map(|shipped| format!("{} ({})", shipped.name, shipped.models.join(", ")));
         UsageError::new(format!(
             "no machine{named} to start from is shipped for the {model}; there are {}",
-            names.join(", ")
+            names.collect::<Vec<_>>().join(", ")
         ))
     })
 }

@@ -36,9 +36,11 @@ Examples:
   bahn machine check mymill
   bahn run INDEX.H --machine mymill
   bahn machine new mytwin --from twin
+  bahn machine new loader --model tnc360 --from module-tnc360
 
 Models of the 400 series start from a mill with rotary table and gear spindle, the TNC 360 from a small mill without, TNC 151 and
-TNC 155 from a knee mill with relay cabinet; twin is a portal mill with two channels. The README.md in the folder explains every file and key.";
+TNC 155 from a knee mill with relay cabinet; twin is a portal mill with two channels, module-tnc360 a positioning module that goes
+beside a mill. The README.md in the folder explains every file and key.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:

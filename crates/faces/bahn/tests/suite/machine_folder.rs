@@ -12,6 +12,22 @@ fn new(model: &str) -> Folder {
     folder
 }
 
+/// A positioning module is started from by its name alone: whoever asks for its model gets a mill.
+#[test]
+fn a_new_positioning_module_goes_beside_a_mill() {
+    let folder = new("tnc360");
+    assert!(!folder.read("m/machine.toml").contains("[module]"));
+    let run = folder.bahn("machine new loader --model tnc360 --from module-tnc360");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(folder.read("loader/machine.toml").contains("[module]"));
+    let check = folder.bahn("machine check loader");
+    assert_eq!(check.code(), 0, "{}{}", check.out(), check.err());
+    assert_eq!(folder.bahn("machine new mill --model tnc415b").code(), 0);
+    let run = folder.bahn("run PALLET.H --machine mill --with loader --fresh --no-graphics --format json");
+    assert_eq!(run.code(), 0, "{}{}", run.err(), run.out());
+    assert_eq!(run.json()["module"]["axes"]["X"]["referenced"], true);
+}
+
 #[test]
 fn a_new_machine_of_each_model_is_whole_and_runs() {
     for model in MODELS {
