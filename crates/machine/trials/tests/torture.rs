@@ -206,6 +206,34 @@ fn the_mill_with_digital_drives_keeps_every_rule() {
     try_seeds("dig425", 0..350);
 }
 
+/// PALLET.H orders a job of the positioning module and waits until it is done: without the module nobody acknowledges M66. A
+/// campaign over the folder tries the others and says so; one that names it does not begin.
+#[test]
+fn a_program_that_waits_for_a_module_is_left_out() {
+    let copy = Copy::of("mill", "torture-module");
+    for entry in std::fs::read_dir(copy.path().join("programs")).unwrap() {
+        let path = entry.unwrap().path();
+        if !(path.ends_with("PALLET.H") || path.ends_with("CIRCLE.H")) {
+            let _ = std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(&path));
+        }
+    }
+    let campaign = load(copy.path());
+    let mut worker = campaign.worker().unwrap();
+    let [left] = campaign.left_out() else {
+        panic!("{:?}", campaign.left_out());
+    };
+    assert_eq!(left.program, "PALLET.H");
+    assert!(left.why.starts_with("waits for strobe M2045"), "{}", left.why);
+    for seed in 0..8 {
+        let plan = worker.plan(seed);
+        assert_eq!(campaign.programs()[plan.program], "CIRCLE.H");
+        assert_eq!(worker.run(&plan).violation, None, "seed {seed}");
+    }
+    let named = of_programs(support::machine("mill"), &["PALLET.H"]);
+    let error = named.worker().err().unwrap().to_string();
+    assert!(error.contains("PALLET.H") && error.contains("M2045"), "{error}");
+}
+
 /// A PLC program that hangs in a loop (M198: time out, error 53 [000:11249]) or calls itself (M199: nesting too deep, error
 /// 50): both stop PLC and machine with a flashing message. Power-off resets the markers; after it the messages can be
 /// cleared, the reference run ends, and the program, begun anew, moves the axes.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use bahn_host::LoadedMachine;
-use bahn_trials::torture::{Campaign, Happening, Rule};
+use bahn_trials::torture::{Campaign, Happening, LeftOut, Rule};
 use serde::Serialize;
 
 use crate::interrupt::Interrupt;
@@ -29,7 +29,10 @@ struct Report {
 #[derive(Debug, Default, Serialize)]
 struct MachineReport {
     machine: String,
+    /// Those that are tried.
     programs: Vec<String>,
+    /// Those that wait for what is not there.
+    left_out: Vec<LeftOut>,
     /// Seeds that were tried.
     seeds: u64,
     /// Time of the machine, s.
@@ -127,7 +130,6 @@ fn try_machine(
 ) -> Result<MachineReport, UsageError> {
     let mut machine = MachineReport {
         machine: campaign.name().to_owned(),
-        programs: campaign.programs().to_vec(),
         ..MachineReport::default()
     };
     let single = options.seeds.end - options.seeds.start == 1;
@@ -151,6 +153,9 @@ fn try_machine(
         report.violations.extend(violation(campaign, &tried));
         report.violations.len() < options.most
     })?;
+    machine.left_out = campaign.left_out().to_vec();
+    let is_tried = |name: &&String| machine.left_out.iter().all(|left| left.program != **name);
+    machine.programs = campaign.programs().iter().filter(is_tried).cloned().collect();
     report.violations.sort_by_key(|violation| violation.seed);
     Ok(machine)
 }
@@ -223,6 +228,9 @@ fn print(report: &Report, options: &TortureOptions) -> Result<(), UsageError> {
             machine.messages,
             machine.went_on
         );
+        for LeftOut { program, why } in &machine.left_out {
+            let _ = writeln!(text, "  left out: {program}, which {why}");
+        }
     }
     let _ = match report.violations.len() {
         0 => writeln!(text, "every rule held"),

@@ -21,8 +21,8 @@ Examples:
 A seed says everything: the program, the moment of its undisturbed run, what fails, what is pressed, and when. In the end
 everything is repaired and the run goes on. docs/torture.md tells what is checked after every contour cycle.
 Exit codes: 0 every rule held, 1 one did not, 2 wrong use, 130 ended by Ctrl-C, with the report so far.
-JSON: machines (machine, programs, seeds, machine_s, messages, went_on) and violations (machine, seed, program, rule, time_s,
-values, events).";
+JSON: machines (machine, programs, left_out (program, why), seeds, machine_s, messages, went_on) and violations (machine, seed,
+program, rule, time_s, values, events).";
 
 /// Options of `bahn torture`.
 #[derive(Args, Debug)]

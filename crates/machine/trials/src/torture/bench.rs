@@ -23,9 +23,27 @@ const MOMENTS_MAX: usize = 96;
 const EVERY_US: u64 = 250_000;
 /// A program that takes longer is tried as far as this, µs.
 const LONGEST_US: u64 = 1_800_000_000;
+/// Whoever waits longer for one acknowledgement of the PLC waits for what is not there, a positioning module say, µs.
+const PATIENCE_US: u64 = 300_000_000;
+
+/// Why a program cannot be tried.
+pub(super) enum Refused {
+    /// What belongs to this machine is not there: the PLC never acknowledges what it says.
+    Waits(String),
+    /// The files, or the program itself.
+    Fails(HostError),
+}
+
+impl From<HostError> for Refused {
+    fn from(error: HostError) -> Refused {
+        Refused::Fails(error)
+    }
+}
 
 /// A machine on which plans are tried, with moments of an undisturbed run.
 pub(super) struct Bench {
+    /// The program of the first channel, by its place among those of the campaign.
+    pub number: usize,
     pub host: Host,
     pub moments: Vec<Saved<Machine>>,
     /// The contour of each channel.
@@ -43,10 +61,11 @@ impl Bench {
     ///
     /// # Errors
     /// When it does not come to its end by itself.
-    pub fn new(machine: &LoadedMachine, program: &str) -> Result<Bench, HostError> {
+    pub fn new(machine: &LoadedMachine, number: usize, program: &str) -> Result<Bench, Refused> {
         let mut host = host(machine, program)?;
         host.keep_path();
         let mut bench = Bench {
+            number,
             contours: (0..host.control().channels())
                 .map(|_| Contour::default())
                 .collect(),
@@ -63,6 +82,7 @@ impl Bench {
         };
         let mut notices = bench.host.notices();
         let (mut every_us, mut due_us) = (EVERY_US, 0);
+        let mut waits_from_us = 0;
         while !bench.has_ended() {
             let now = bench.host.control().time_us();
             if now >= LONGEST_US {
@@ -71,9 +91,16 @@ impl Bench {
             if bench.is_stuck() {
                 let shown = bench.host.control().shown().first();
                 let why = shown.map_or_else(String::new, |shown| bench.host.control().shown_text(shown));
-                return Err(HostError::File(format!(
+                return Err(Refused::Fails(HostError::File(format!(
                     "{program} does not come to its end undisturbed: {why}"
-                )));
+                ))));
+            }
+            match bench.host.control().waiting() {
+                Some(waiting) if now >= waits_from_us + PATIENCE_US => {
+                    return Err(Refused::Waits(format!("waits for {waiting}")));
+                }
+                Some(_) => {}
+                None => waits_from_us = now,
             }
             if now >= due_us {
                 if bench.moments.len() == MOMENTS_MAX {
@@ -101,7 +128,9 @@ impl Bench {
             }
         }
         if bench.contours.iter().all(Contour::is_empty) {
-            return Err(HostError::File(format!("{program} moves no axis")));
+            return Err(Refused::Fails(HostError::File(format!(
+                "{program} moves no axis"
+            ))));
         }
         Ok(bench)
     }

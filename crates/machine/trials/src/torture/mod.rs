@@ -22,6 +22,7 @@ mod ways;
 
 use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::OnceLock;
 
 pub use catalogue::Kind;
 pub use plan::{Happening, Plan};
@@ -32,15 +33,28 @@ use bahn_host::Action;
 use bahn_host::HostError;
 use bahn_host::LoadedMachine;
 use bahn_text::Diagnostic;
-use bench::Bench;
+use bench::{Bench, Refused};
 use catalogue::Catalogue;
 use plan::{Choice, Scene};
+use serde::Serialize;
 
 /// A machine that is tried, and its programs.
 pub struct Campaign {
     machine: LoadedMachine,
     catalogue: Catalogue,
     programs: Vec<String>,
+    /// Programs must be tried because they are named.
+    are_named: bool,
+    left_out: OnceLock<Vec<LeftOut>>,
+}
+
+/// A program of the folder that is not tried.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LeftOut {
+    /// Its file name.
+    pub program: String,
+    /// What it waits for, undisturbed.
+    pub why: String,
 }
 
 impl Campaign {
@@ -59,6 +73,8 @@ impl Campaign {
             catalogue: Catalogue::of(&machine, machine.simulated()?),
             machine,
             programs,
+            are_named: !named.is_empty(),
+            left_out: OnceLock::new(),
         })
     }
 
@@ -91,21 +107,41 @@ impl Campaign {
         &self.machine.folder.name
     }
 
-    /// File names of the programs that are tried.
+    /// File names of the programs, with those that are left out.
     pub fn programs(&self) -> &[String] {
         &self.programs
+    }
+
+    /// Programs that are not tried because undisturbed they wait for what is not there; known with the first [`Worker`].
+    pub fn left_out(&self) -> &[LeftOut] {
+        self.left_out.get().map_or(&[], Vec::as_slice)
     }
 
     /// Somebody who tries seeds: every program is run once, undisturbed.
     ///
     /// # Errors
-    /// When a program does not come to its end by itself.
+    /// When a program does not come to its end by itself. One that nobody has named and that waits for what is not there is
+    /// left out, as long as another one is left.
     pub fn worker(&self) -> Result<Worker<'_>, HostError> {
-        let benches = self
-            .programs
-            .iter()
-            .map(|program| Bench::new(&self.machine, program));
-        let benches: Vec<Bench> = benches.collect::<Result<_, _>>()?;
+        let (mut benches, mut left_out) = (Vec::new(), Vec::new());
+        for (number, program) in self.programs.iter().enumerate() {
+            match Bench::new(&self.machine, number, program) {
+                Ok(bench) => benches.push(bench),
+                Err(Refused::Fails(error)) => return Err(error),
+                Err(Refused::Waits(why)) => left_out.push(LeftOut {
+                    program: program.clone(),
+                    why,
+                }),
+            }
+        }
+        if let Some(LeftOut { program, why }) = left_out.first()
+            && (self.are_named || benches.is_empty())
+        {
+            return Err(HostError::File(format!(
+                "{program} does not come to its end undisturbed: it {why}"
+            )));
+        }
+        self.left_out.get_or_init(|| left_out);
         Ok(Worker {
             campaign: self,
             scenes: benches.iter().map(Scene::of).collect(),
@@ -162,7 +198,8 @@ impl Worker<'_> {
     }
 
     fn part(&mut self, plan: &Plan, happenings: &[Happening]) -> Trial {
-        match self.benches.get_mut(plan.program) {
+        let mut benches = self.benches.iter_mut();
+        match benches.find(|bench| bench.number == plan.program) {
             Some(bench) => trial::run(bench, &self.campaign.catalogue, plan, happenings),
             None => Trial::default(),
         }

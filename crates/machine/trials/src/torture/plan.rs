@@ -39,6 +39,8 @@ const TURNS: usize = 50;
 /// What the seeds choose from in a program.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
+    /// The program, by its place among those of the campaign.
+    program: usize,
     /// The kept moments, µs since power-on.
     moments: Vec<u64>,
     /// What the handwheel may do beside its path.
@@ -48,6 +50,7 @@ pub(super) struct Scene {
 impl Scene {
     pub fn of(bench: &Bench) -> Scene {
         Scene {
+            program: bench.number,
             moments: bench.moments.iter().map(|moment| moment.time_us()).collect(),
             turns: bench.led.iter().flat_map(|led| turns(led.wheels())).collect(),
         }
@@ -65,8 +68,8 @@ impl Choice<'_> {
     /// The plan of a seed: a function of the seed alone.
     pub fn plan(&self, seed: u64) -> Plan {
         let mut dice = Dice::new(seed);
-        let program = dice.below(self.scenes.len());
-        let scene = self.scenes.get(program);
+        let scene = self.scenes.get(dice.below(self.scenes.len()));
+        let program = scene.map_or(0, |scene| scene.program);
         let moments = scene.map_or(&[][..], |scene| &scene.moments);
         let turns = scene.map_or(&[][..], |scene| &scene.turns);
         let moment = dice.below(moments.len());
