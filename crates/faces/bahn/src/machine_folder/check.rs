@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use bahn_host::{LoadedMachine, tool_table};
+use bahn_host::{LoadedMachine, Machine900, tool_table};
 use bahn_interpreter::{AbsentAxes, Rules, Settings};
 use bahn_parameters::ParameterList;
-use bahn_text::Severity;
+use bahn_text::{Diagnostic, Severity};
 use bahn_tnc::datum_shifts;
 
 use super::load;
@@ -18,6 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::options::Format;
 use crate::reports::{OfFile, Reports};
 use crate::{Outcome, UsageError};
+use bahn_report::conformance::SYSTEM_900;
 use bahn_report::count;
 
 #[derive(Debug, Serialize)]
@@ -42,6 +43,9 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
 }
 
 fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report, UsageError> {
+    if Machine900::is_meant(folder) {
+        return check_900(folder, format, interrupt);
+    }
     let (loaded, faults) = match load(folder)? {
         Ok(machine) => {
             let faults = [machine.refused.as_slice(), machine.warnings.as_slice()].concat();
@@ -49,36 +53,79 @@ fn check(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report,
         }
         Err(faults) => (None, faults),
     };
-    let errors = faults
-        .iter()
-        .filter(|fault| fault.severity == Severity::Error)
-        .count();
-    if format == Format::Text {
-        diagnostics::print_faults(&faults);
-        let what = loaded
-            .as_ref()
-            .map_or("cannot be switched on".to_owned(), |machine| {
-                format!("{}, {}", machine.folder.name, machine.parameters.model())
-            });
-        diagnostics::print_text(&format!(
-            "{}: {what}, {}, {}",
-            folder.display(),
-            count(errors, "error"),
-            count(faults.len() - errors, "warning")
-        ));
-    }
-    let programs = match &loaded {
+    let model = loaded.as_ref().map(|machine| machine.parameters.model());
+    let what = loaded.as_ref().zip(model);
+    let what = what.map(|(machine, model)| format!("{}, {model}", machine.folder.name));
+    let programs = || match &loaded {
         Some(machine) => check_programs(machine, format, interrupt),
         None => Vec::new(),
     };
     Ok(Report {
-        folder: folder.display().to_string(),
         name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
-        model: loaded.as_ref().map(|machine| machine.parameters.model().id()),
-        ok: loaded.is_some() && errors == 0 && programs.iter().all(is_fine),
+        model: model.map(|model| model.id()),
+        ..report(folder, format, &faults, what, programs)
+    })
+}
+
+/// The folder of a machine with a System 900.
+fn check_900(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Report, UsageError> {
+    let (loaded, faults) = match Machine900::load(folder)? {
+        Ok(machine) => {
+            let warnings = machine.warnings();
+            (Some(machine), warnings)
+        }
+        Err(faults) => (None, faults),
+    };
+    let what = loaded.as_ref().map(|machine| {
+        let channels = count(machine.checked.channels.len(), "channel");
+        format!("{}, System 900 with {channels}", machine.folder.name)
+    });
+    let programs = || {
+        let how = Check {
+            settings: Settings::default(),
+            format,
+        };
+        let all = loaded.iter().flat_map(|machine| programs(&machine.programs()));
+        let checked = all.map(|path| OfFile::reported(&path, check::check(&path, &how, interrupt)));
+        checked.collect()
+    };
+    Ok(Report {
+        name: loaded.as_ref().map(|machine| machine.folder.name.clone()),
+        model: loaded.as_ref().map(|_| SYSTEM_900),
+        ..report(folder, format, &faults, what, programs)
+    })
+}
+
+/// Prints the faults of a folder and what it is; nothing where it cannot be switched on. Then come its programs.
+fn report(
+    folder: &Path,
+    format: Format,
+    faults: &[Diagnostic],
+    what: Option<String>,
+    programs: impl FnOnce() -> Vec<OfFile<CheckReport>>,
+) -> Report {
+    let is_error = |fault: &&Diagnostic| fault.severity == Severity::Error;
+    let errors = faults.iter().filter(is_error).count();
+    let loads = what.is_some();
+    if format == Format::Text {
+        diagnostics::print_faults(faults);
+        diagnostics::print_text(&format!(
+            "{}: {}, {}, {}",
+            folder.display(),
+            what.as_deref().unwrap_or("cannot be switched on"),
+            count(errors, "error"),
+            count(faults.len() - errors, "warning")
+        ));
+    }
+    let programs = programs();
+    Report {
+        folder: folder.display().to_string(),
+        name: None,
+        model: None,
+        ok: loads && errors == 0 && programs.iter().all(is_fine),
         faults: faults.iter().map(Item::from).collect(),
         programs,
-    })
+    }
 }
 
 /// Checks the part programs of a machine with its control, parameters and tools.

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_machine::{Machine, MachineFolder};
+use bahn_machine::{Folder900, Machine, MachineFolder};
 use bahn_parameters::equipment::Equipment;
 use bahn_parameters::own_functions::OwnFunctions;
 use bahn_parameters::terminals::Fitted;
@@ -28,6 +28,10 @@ use crate::{HostError, files};
 
 /// Texts that a PLC message file holds at most: M2924 to M3023 [000:6625-6633].
 const MESSAGES: usize = 100;
+
+/// Why the folder of a System 900 is not switched on.
+const SYSTEM_900: &str =
+    "this machine has a System 900: bahn test, bahn check, bahn machine check and bahn q take it";
 
 /// A machine that can be switched on.
 pub struct LoadedMachine {
@@ -220,6 +224,11 @@ fn load(root: &Path, instead: &Instead<'_>) -> Result<Result<LoadedMachine, Vec<
         ))
     })?;
     let text = decode(&bytes);
+    if let Some(span) = Folder900::named_at(&text) {
+        return Ok(Err(vec![
+            Diagnostic::error(span, SYSTEM_900).in_text(&file, &text),
+        ]));
+    }
     let (mut folder, faults) = MachineFolder::read(&text);
     if let Some(tools) = instead.tools {
         folder.tools = Some(tools.to_owned());
