@@ -297,10 +297,7 @@ impl Axis {
         let velocity = match self.method {
             Method::Lag => {
                 self.run_up.follow(self.profile_mm_min);
-                match self.settings.lag.feed_forward {
-                    0.0 => control,
-                    part => control + part * self.profile_mm_min,
-                }
+                self.settings.lag.in_advance(control, self.profile_mm_min)
             }
             Method::Precontrol => {
                 let damping = self.settings.precontrol.damping;

@@ -108,6 +108,17 @@ pub struct LagSettings {
     pub emergency_mm: f64,
 }
 
+impl LagSettings {
+    /// The speed that the lag gives, with what of the speed of the nominal position is put out in advance, mm/min.
+    #[inline]
+    pub(crate) fn in_advance(&self, control: f64, profile: f64) -> f64 {
+        match self.feed_forward {
+            0.0 => control,
+            part => control + part * profile,
+        }
+    }
+}
+
 /// Operation with feed pre-control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrecontrolSettings {

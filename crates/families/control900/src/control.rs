@@ -10,6 +10,7 @@ use crate::machine::Machine;
 use crate::message::Message;
 use crate::setup::Setup;
 use crate::transfer::Transfer;
+use crate::{branch, command, monitor, status};
 
 /// A control. A clone goes on by itself, with the same bits.
 #[derive(Clone)]
@@ -21,8 +22,10 @@ pub struct Control900 {
 impl Control900 {
     /// A control at power-on with its parameters.
     pub fn new(memory: Memory, setup: Setup) -> Control900 {
+        let mut machine = Machine::new(memory, setup);
+        status::show_at_start(&mut machine);
         Control900 {
-            machine: Machine::new(memory, setup),
+            machine,
             clock: Clock::default(),
         }
     }
@@ -55,7 +58,7 @@ impl Control900 {
         self.machine.messages.reserve();
         self.machine.transfers.reserve();
         for k in 0..self.machine.channels.len() {
-            self.machine.jump(k);
+            branch::jump(&mut self.machine, k);
             self.machine.prepare(k);
         }
     }
@@ -64,8 +67,8 @@ impl Control900 {
     pub fn cycle(&mut self, plant: &mut dyn Plant) {
         self.clock.cycle(&mut self.machine, false, plant, None);
         // Nominal and actual positions are now of the same servo step.
-        self.machine.watch();
-        self.machine.show();
+        monitor::watch(&mut self.machine);
+        status::show(&mut self.machine);
     }
 
     /// What the machine was told last.
@@ -80,7 +83,8 @@ impl Control900 {
     /// written.
     pub fn write_operator(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
         let receivers = self.machine.memory.enter(name, value)?;
-        self.machine.notice(self.machine.memory.place(name)?);
+        let place = self.machine.memory.place(name)?;
+        command::notice(&mut self.machine, place);
         Ok(receivers)
     }
 
@@ -90,7 +94,8 @@ impl Control900 {
     /// When the name leads nowhere, or the value does not go in.
     pub fn write_plc(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
         let receivers = self.machine.memory.write(name, value)?;
-        self.machine.notice(self.machine.memory.place(name)?);
+        let place = self.machine.memory.place(name)?;
+        command::notice(&mut self.machine, place);
         Ok(receivers)
     }
 
@@ -104,7 +109,7 @@ impl Control900 {
     /// # Errors
     /// When the name leads nowhere.
     pub fn number(&self, name: Name) -> Result<Option<f64>, SpaceError> {
-        Ok(self.machine.exact(self.machine.memory.place(name)?))
+        Ok(status::exact(&self.machine, self.machine.memory.place(name)?))
     }
 
     /// Transfers of M functions to the PLC, the first one first: the last 4096.

@@ -5,78 +5,82 @@ use bahn_system900::{AxisParameter, ChannelParameter, Memory};
 
 use crate::machine::Machine;
 
-impl Machine {
-    /// Absolute axes are where they were at power-off [002:7012-7022].
-    pub(crate) fn take_positions(&mut self) {
-        let places = self.places.iter();
-        for (unit, place) in self.core.axes.iter_mut().zip(places) {
-            if place.block.is_absolute {
-                let kept = self.memory.of_axis(place.physical, AxisParameter::ActualPosition);
-                let count = unit.servo.count();
-                unit.set_datum(count, kept.number().unwrap_or(0.0));
-                unit.referenced = true;
-            }
-            unit.transfer();
-        }
-    }
-
-    /// Takes the enables of the PLC, opens and closes the loops as they say.
-    pub(crate) fn follow_enables(&mut self) {
-        for channel in &mut self.channels {
-            let is_set = |parameter| {
-                let cell = self.memory.of_channel(channel.number, parameter);
-                cell.whole().unwrap_or(0) != 0
-            };
-            channel.loops_enabled = is_set(ChannelParameter::LoopsEnabled);
-            channel.axes_enabled = is_set(ChannelParameter::AxesEnabled);
-            channel.safety_stop = is_set(ChannelParameter::SafetyStop);
-            let number = self
+/// Absolute axes are where they were at power-off [002:7012-7022].
+pub(crate) fn take_positions(machine: &mut Machine) {
+    let places = machine.places.iter();
+    for (unit, place) in machine.core.axes.iter_mut().zip(places) {
+        if place.block.is_absolute {
+            let kept = machine
                 .memory
-                .of_channel(channel.number, ChannelParameter::PathOverride)
-                .whole();
-            let number = number
-                .and_then(|number| u8::try_from(number).ok())
-                .filter(|number| *number > 0);
-            channel.override_percent = self.memory.override_percent(number.unwrap_or(1));
+                .of_axis(place.physical, AxisParameter::ActualPosition);
+            let count = unit.servo.count();
+            unit.set_datum(count, kept.number().unwrap_or(0.0));
+            unit.referenced = true;
         }
-        let closed = self.core.loops_closed;
-        let places = self.places.iter();
-        for (unit, place) in self.core.axes.iter_mut().zip(places) {
-            let Some(channel) = self.channels.get(unit.channel) else {
-                continue;
-            };
-            let free = follows(&self.memory, place.physical);
-            hold(unit, closed && channel.loops_enabled && !free);
-            if unit.enabled != channel.axes_enabled {
-                unit.enabled = channel.axes_enabled;
-                unit.servo.set_enabled(channel.axes_enabled);
-                if !channel.axes_enabled {
-                    unit.stand(unit.nominal);
-                }
+        unit.transfer();
+    }
+}
+
+/// Takes the enables of the PLC, opens and closes the loops as they say.
+pub(crate) fn follow_enables(machine: &mut Machine) {
+    for channel in &mut machine.channels {
+        let is_set = |parameter| {
+            let cell = machine.memory.of_channel(channel.number, parameter);
+            cell.whole().unwrap_or(0) != 0
+        };
+        channel.loops_enabled = is_set(ChannelParameter::LoopsEnabled);
+        channel.axes_enabled = is_set(ChannelParameter::AxesEnabled);
+        channel.safety_stop = is_set(ChannelParameter::SafetyStop);
+        let number = machine
+            .memory
+            .of_channel(channel.number, ChannelParameter::PathOverride)
+            .whole();
+        let number = number
+            .and_then(|number| u8::try_from(number).ok())
+            .filter(|number| *number > 0);
+        channel.override_percent = machine.memory.override_percent(number.unwrap_or(1));
+    }
+    let closed = machine.core.loops_closed;
+    let places = machine.places.iter();
+    for (unit, place) in machine.core.axes.iter_mut().zip(places) {
+        let Some(channel) = machine.channels.get(unit.channel) else {
+            continue;
+        };
+        let free = follows(&machine.memory, place.physical);
+        hold(unit, closed && channel.loops_enabled && !free);
+        if unit.enabled != channel.axes_enabled {
+            unit.enabled = channel.axes_enabled;
+            unit.servo.set_enabled(channel.axes_enabled);
+            if !channel.axes_enabled {
+                unit.stand(unit.nominal);
             }
         }
-        for channel in self.channels.iter_mut().filter(|channel| !channel.axes_enabled) {
-            // Without dynamics: the path stands where it is.
-            channel.run.track.halt();
-        }
     }
+    for channel in machine
+        .channels
+        .iter_mut()
+        .filter(|channel| !channel.axes_enabled)
+    {
+        // Without dynamics: the path stands where it is.
+        channel.run.track.halt();
+    }
+}
 
-    /// P8891: a move of a locked axis is due, or is executed [002:4765-4770].
-    pub(crate) fn is_locked(&self, k: usize) -> bool {
-        let Some(channel) = self.channels.get(k) else {
-            return false;
-        };
-        let bits = self
-            .memory
-            .of_channel(channel.number, ChannelParameter::AxisLock)
-            .bits()
-            .unwrap_or(0);
-        let Some(element) = channel.run.element().filter(|_| bits != 0) else {
-            return false;
-        };
-        let mut own = self.core.axes.owned(k);
-        own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
-    }
+/// P8891: a move of a locked axis is due, or is executed [002:4765-4770].
+pub(crate) fn is_locked(machine: &Machine, k: usize) -> bool {
+    let Some(channel) = machine.channels.get(k) else {
+        return false;
+    };
+    let bits = machine
+        .memory
+        .of_channel(channel.number, ChannelParameter::AxisLock)
+        .bits()
+        .unwrap_or(0);
+    let Some(element) = channel.run.element().filter(|_| bits != 0) else {
+        return false;
+    };
+    let mut own = machine.core.axes.owned(k);
+    own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
 }
 
 /// P12140, P12141: the nominal position is where the axis is [002:8272-8282].

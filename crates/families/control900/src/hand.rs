@@ -14,9 +14,9 @@ use bahn_path::Direction;
 use bahn_servo::Measured;
 use bahn_system900::{AxisParameter, ChannelParameter, Memory, SpindleBlock};
 
+use crate::axis_state::{AxisPlace, Goal, Hand};
 use crate::channel::Mode;
 use crate::machine::Machine;
-use crate::units::AxisPlace;
 
 /// Degrees per minute of one rpm.
 const DEG_MIN_PER_RPM: f64 = 360.0;
@@ -25,246 +25,230 @@ const WHEELS: u8 = 8;
 /// Steps of the manual table where none is loaded, mm (inferred: their first ones are lost).
 const STEPS_MM: [f64; 7] = [10.0, 1.0, 0.1, 0.01, 0.001, 0.0, 0.0];
 
-/// Where a position of the PLC or a step leads.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Goal {
-    /// Machine coordinate, mm or degrees.
-    pub position: f64,
-    /// mm/min.
-    pub feed_mm_min: f64,
-    /// Which of P12191 and P12192 says that it is reached; `None` for a step by hand.
-    pub reports: Option<u32>,
+/// P8752: the axis of P8751 moves as P8750 says [002:3983-4009].
+pub(crate) fn begin_by_hand(machine: &mut Machine, number: u8) {
+    let of = |parameter| machine.memory.of_channel(number, parameter);
+    let direction = match of(ChannelParameter::ManualMove).whole() {
+        Some(1) => Some(Direction::Plus),
+        Some(2) => Some(Direction::Minus),
+        _ => None,
+    };
+    let feed = manual_feed(machine, number);
+    let is_step = of(ChannelParameter::ManualMode).whole() == Some(2);
+    let step = step_mm(machine, number);
+    let logical = of(ChannelParameter::ManualAxis).whole().unwrap_or(0);
+    let is_hand = machine
+        .channels
+        .get(usize::from(number) - 1)
+        .is_some_and(|channel| channel.mode == Mode::Hand);
+    let places = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter());
+    for ((place, hand), unit) in places.filter(|((place, _), _)| place.channel + 1 == number) {
+        let is_meant = i64::from(place.logical) == logical && is_hand;
+        hand.key = None;
+        match direction.filter(|_| is_meant) {
+            Some(direction) if is_step && hand.goal.is_none() => {
+                let (position, _) = within(unit, unit.nominal + direction.sign() * step);
+                hand.goal = Some(Goal {
+                    position,
+                    feed_mm_min: feed,
+                    reports: None,
+                });
+            }
+            Some(direction) if !is_step => hand.key = Some((direction, feed)),
+            _ => {}
+        }
+    }
 }
 
-/// What leads an axis beside all paths.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Hand {
-    pub goal: Option<Goal>,
-    /// A direction key, with its feed, mm/min.
-    pub key: Option<(Direction, f64)>,
-    /// The axis seeks its reference point in a direction.
-    pub seeks: Option<Direction>,
-    /// The zero pulse counts.
-    pub released: bool,
-    /// Count of its handwheel in the last cycle, and where the wheel leads.
-    wheel: Option<(u8, i64, f64)>,
-    /// It turns as a spindle.
-    turns: bool,
+/// The feed by hand, mm/min.
+fn manual_feed(machine: &Machine, number: u8) -> f64 {
+    let of = |parameter| {
+        let feed = machine.memory.of_channel(number, parameter).number();
+        feed.filter(|feed| *feed > 0.0).unwrap_or(f64::INFINITY)
+    };
+    of(ChannelParameter::ManualFeed).min(of(ChannelParameter::ManualFeedMax))
 }
 
-impl Machine {
-    /// P8752: the axis of P8751 moves as P8750 says [002:3983-4009].
-    pub(crate) fn begin_by_hand(&mut self, number: u8) {
-        let of = |parameter| self.memory.of_channel(number, parameter);
-        let direction = match of(ChannelParameter::ManualMove).whole() {
-            Some(1) => Some(Direction::Plus),
-            Some(2) => Some(Direction::Minus),
+/// The step by hand, mm.
+fn step_mm(machine: &Machine, number: u8) -> f64 {
+    let at = machine
+        .memory
+        .of_channel(number, ChannelParameter::StepPointer)
+        .whole()
+        .unwrap_or(0);
+    let at = u32::try_from(at).unwrap_or(0).min(STEPS_MM.len() as u32 - 1);
+    let place = machine
+        .memory
+        .channel_place_at(number, ChannelParameter::StepTable, at);
+    let own = place.and_then(|place| machine.memory.at(place).number());
+    own.or(STEPS_MM.get(at as usize).copied()).unwrap_or(0.0)
+}
+
+/// P8761: the next step of the table.
+pub(crate) fn next_step(machine: &mut Machine, number: u8) {
+    let at = machine
+        .memory
+        .of_channel(number, ChannelParameter::StepPointer)
+        .whole()
+        .unwrap_or(0);
+    let next = (at + 1) % STEPS_MM.len() as i64;
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::StepPointer, next);
+    machine.memory.set_channel(number, ChannelParameter::NextStep, 0);
+    let step = step_mm(machine, number);
+    if let Some(place) = machine.memory.channel_place(number, ChannelParameter::StepWidth) {
+        machine.memory.store(place, Some(step), 3);
+    }
+}
+
+/// P12111, P12112: a position of the PLC is written, or cleared [002:7799-7815].
+pub(crate) fn position(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
+    let second = u32::from(parameter == AxisParameter::GoAbsolute);
+    let value = machine.memory.of_axis(physical, parameter).number();
+    let speed = axis_number(&machine.memory, physical, AxisParameter::RelativeSpeed, second);
+    let percent = position_percent(machine, physical, second);
+    store_reached(&mut machine.memory, physical, second, 0);
+    let axes = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter());
+    for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
+        hand.goal = value.map(|value| {
+            let wanted = if second == 0 { unit.nominal + value } else { value };
+            let (position, _) = within(unit, wanted);
+            let speed = speed
+                .filter(|speed| *speed > 0.0)
+                .unwrap_or(place.block.max_mm_min);
+            Goal {
+                position,
+                feed_mm_min: speed * percent / 100.0,
+                reports: Some(second),
+            }
+        });
+    }
+}
+
+fn position_percent(machine: &Machine, physical: u8, second: u32) -> f64 {
+    let place = machine.places.iter().find(|place| place.physical == physical);
+    let number = place.map_or(1, |place| place.channel + 1);
+    let of_channel = match second {
+        0 => ChannelParameter::RelativeOverride,
+        _ => ChannelParameter::AbsoluteOverride,
+    };
+    let own = axis_number(&machine.memory, physical, AxisParameter::RelativeOverride, second);
+    let own = own.filter(|number| *number > 0.0);
+    let common = || machine.memory.of_channel(number, of_channel).number();
+    let number = own.or_else(common).filter(|number| *number > 0.0).unwrap_or(1.0);
+    machine.memory.override_percent(number as u8)
+}
+
+/// P12130: the axis seeks its reference point, its zero pulse counts, or it has it here [002:8018-8042].
+pub(crate) fn begin_seek(machine: &mut Machine, physical: u8) {
+    let bits = machine
+        .memory
+        .of_axis(physical, AxisParameter::Reference)
+        .bits()
+        .unwrap_or(0);
+    let [plus, minus, release, set] = bits.to_le_bytes();
+    let axes = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter_mut());
+    for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
+        hand.seeks = match (plus, minus) {
+            (1, _) => Some(Direction::Plus),
+            (_, 1) => Some(Direction::Minus),
             _ => None,
         };
-        let feed = self.manual_feed(number);
-        let is_step = of(ChannelParameter::ManualMode).whole() == Some(2);
-        let step = self.step_mm(number);
-        let logical = of(ChannelParameter::ManualAxis).whole().unwrap_or(0);
-        let is_hand = self
+        if release == 1 && !hand.released {
+            unit.servo.forget_marks();
+            unit.referenced = false;
+        }
+        hand.released = release == 1;
+        if set == 1 {
+            unit.set_datum(unit.servo.count(), place.block.reference_mm);
+            unit.referenced = true;
+        }
+    }
+}
+
+/// Moves what nothing but the operator and the PLC moves, for a cycle.
+pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
+    turn_wheels(machine, measured);
+    turn_spindles(machine);
+    for k in 0..machine.channels.len() {
+        let feed = manual_feed(machine, k as u8 + 1);
+        let is_hand = machine
             .channels
-            .get(usize::from(number) - 1)
+            .get(k)
             .is_some_and(|channel| channel.mode == Mode::Hand);
-        let places = self.places.iter().zip(&mut self.hands).zip(self.core.axes.iter());
-        for ((place, hand), unit) in places.filter(|((place, _), _)| place.channel + 1 == number) {
-            let is_meant = i64::from(place.logical) == logical && is_hand;
-            hand.key = None;
-            match direction.filter(|_| is_meant) {
-                Some(direction) if is_step && hand.goal.is_none() => {
-                    let (position, _) = within(unit, unit.nominal + direction.sign() * step);
-                    hand.goal = Some(Goal {
-                        position,
-                        feed_mm_min: feed,
-                        reports: None,
-                    });
-                }
-                Some(direction) if !is_step => hand.key = Some((direction, feed)),
-                _ => {}
-            }
-        }
-    }
-
-    /// The feed by hand, mm/min.
-    fn manual_feed(&self, number: u8) -> f64 {
-        let of = |parameter| {
-            let feed = self.memory.of_channel(number, parameter).number();
-            feed.filter(|feed| *feed > 0.0).unwrap_or(f64::INFINITY)
+        let Some(now) = machine.parts(k).map(|(_, _, site)| site.now) else {
+            continue;
         };
-        of(ChannelParameter::ManualFeed).min(of(ChannelParameter::ManualFeedMax))
-    }
-
-    /// The step by hand, mm.
-    fn step_mm(&self, number: u8) -> f64 {
-        let at = self
-            .memory
-            .of_channel(number, ChannelParameter::StepPointer)
-            .whole()
-            .unwrap_or(0);
-        let at = u32::try_from(at).unwrap_or(0).min(STEPS_MM.len() as u32 - 1);
-        let place = self
-            .memory
-            .channel_place_at(number, ChannelParameter::StepTable, at);
-        let own = place.and_then(|place| self.memory.at(place).number());
-        own.or(STEPS_MM.get(at as usize).copied()).unwrap_or(0.0)
-    }
-
-    /// P8761: the next step of the table.
-    pub(crate) fn next_step(&mut self, number: u8) {
-        let at = self
-            .memory
-            .of_channel(number, ChannelParameter::StepPointer)
-            .whole()
-            .unwrap_or(0);
-        let next = (at + 1) % STEPS_MM.len() as i64;
-        self.memory
-            .set_channel(number, ChannelParameter::StepPointer, next);
-        self.memory.set_channel(number, ChannelParameter::NextStep, 0);
-        let step = self.step_mm(number);
-        if let Some(place) = self.memory.channel_place(number, ChannelParameter::StepWidth) {
-            self.memory.store(place, Some(step), 3);
-        }
-    }
-
-    /// P12111, P12112: a position of the PLC is written, or cleared [002:7799-7815].
-    pub(crate) fn position(&mut self, physical: u8, parameter: AxisParameter) {
-        let second = u32::from(parameter == AxisParameter::GoAbsolute);
-        let value = self.memory.of_axis(physical, parameter).number();
-        let speed = axis_number(&self.memory, physical, AxisParameter::RelativeSpeed, second);
-        let percent = self.position_percent(physical, second);
-        store_reached(&mut self.memory, physical, second, 0);
-        let axes = self.places.iter().zip(&mut self.hands).zip(self.core.axes.iter());
-        for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
-            hand.goal = value.map(|value| {
-                let wanted = if second == 0 { unit.nominal + value } else { value };
-                let (position, _) = within(unit, wanted);
-                let speed = speed
-                    .filter(|speed| *speed > 0.0)
-                    .unwrap_or(place.block.max_mm_min);
-                Goal {
-                    position,
-                    feed_mm_min: speed * percent / 100.0,
-                    reports: Some(second),
-                }
-            });
-        }
-    }
-
-    fn position_percent(&self, physical: u8, second: u32) -> f64 {
-        let place = self.places.iter().find(|place| place.physical == physical);
-        let number = place.map_or(1, |place| place.channel + 1);
-        let of_channel = match second {
-            0 => ChannelParameter::RelativeOverride,
-            _ => ChannelParameter::AbsoluteOverride,
-        };
-        let own = axis_number(&self.memory, physical, AxisParameter::RelativeOverride, second);
-        let own = own.filter(|number| *number > 0.0);
-        let common = || self.memory.of_channel(number, of_channel).number();
-        let number = own.or_else(common).filter(|number| *number > 0.0).unwrap_or(1.0);
-        self.memory.override_percent(number as u8)
-    }
-
-    /// P12130: the axis seeks its reference point, its zero pulse counts, or it has it here [002:8018-8042].
-    pub(crate) fn seek(&mut self, physical: u8) {
-        let bits = self
-            .memory
-            .of_axis(physical, AxisParameter::Reference)
-            .bits()
-            .unwrap_or(0);
-        let [plus, minus, release, set] = bits.to_le_bytes();
-        let axes = self
+        let axes = machine
             .places
             .iter()
-            .zip(&mut self.hands)
-            .zip(self.core.axes.iter_mut());
-        for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
-            hand.seeks = match (plus, minus) {
-                (1, _) => Some(Direction::Plus),
-                (_, 1) => Some(Direction::Minus),
-                _ => None,
-            };
-            if release == 1 && !hand.released {
-                unit.servo.forget_marks();
-                unit.referenced = false;
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter_mut());
+        for ((place, hand), unit) in axes.filter(|(_, unit)| unit.channel == k) {
+            if !is_hand {
+                hand.key = None;
             }
-            hand.released = release == 1;
-            if set == 1 {
-                unit.set_datum(unit.servo.count(), place.block.reference_mm);
-                unit.referenced = true;
-            }
+            lead(place, hand, unit, feed, &now, &mut machine.memory);
         }
     }
+}
 
-    /// Moves what nothing but the operator and the PLC moves, for a cycle.
-    pub(crate) fn move_by_hand(&mut self, measured: &Measured) {
-        self.turn_wheels(measured);
-        self.turn_spindles();
-        for k in 0..self.channels.len() {
-            let feed = self.manual_feed(k as u8 + 1);
-            let is_hand = self
-                .channels
-                .get(k)
-                .is_some_and(|channel| channel.mode == Mode::Hand);
-            let Some(now) = self.parts(k).map(|(_, _, site)| site.now) else {
-                continue;
-            };
-            let axes = self
-                .places
-                .iter()
-                .zip(&mut self.hands)
-                .zip(self.core.axes.iter_mut());
-            for ((place, hand), unit) in axes.filter(|(_, unit)| unit.channel == k) {
-                if !is_hand {
-                    hand.key = None;
+/// P11400: what the handwheels were turned in this cycle [002:6297-6360].
+fn turn_wheels(machine: &mut Machine, measured: &Measured) {
+    for number in 1..=WHEELS {
+        let Some(wheel) = machine.memory.handwheel(number) else {
+            continue;
+        };
+        let count = measured.encoder(usize::from(wheel.encoder) - 1).count;
+        let axes = machine
+            .places
+            .iter()
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter());
+        for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == wheel.axis) {
+            let is_free = matches!(unit.mover, Mover::None | Mover::Manual);
+            hand.wheel = match hand.wheel {
+                _ if !wheel.active || !is_free => None,
+                Some((by, before, target)) if by == number => {
+                    let way = (count - before) as f64 * wheel.step_mm;
+                    Some((number, count, within(unit, target + way).0))
                 }
-                lead(place, hand, unit, feed, &now, &mut self.memory);
-            }
+                Some(other) => Some(other),
+                None => Some((number, count, unit.nominal)),
+            };
         }
     }
+}
 
-    /// P11400: what the handwheels were turned in this cycle [002:6297-6360].
-    fn turn_wheels(&mut self, measured: &Measured) {
-        for number in 1..=WHEELS {
-            let Some(wheel) = self.memory.handwheel(number) else {
-                continue;
-            };
-            let count = measured.encoder(usize::from(wheel.encoder) - 1).count;
-            let axes = self.places.iter().zip(&mut self.hands).zip(self.core.axes.iter());
-            for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == wheel.axis) {
-                let is_free = matches!(unit.mover, Mover::None | Mover::Manual);
-                hand.wheel = match hand.wheel {
-                    _ if !wheel.active || !is_free => None,
-                    Some((by, before, target)) if by == number => {
-                        let way = (count - before) as f64 * wheel.step_mm;
-                        Some((number, count, within(unit, target + way).0))
-                    }
-                    Some(other) => Some(other),
-                    None => Some((number, count, unit.nominal)),
-                };
-            }
-        }
-    }
-
-    /// P11640: spindles turn as they are ordered [002:6575-6627].
-    fn turn_spindles(&mut self) {
-        for number in 1..=WHEELS {
-            let Some(spindle) = self.memory.spindle(number) else {
-                continue;
-            };
-            let time_s = f64::from(self.core.timing.contour_us()) * 1e-6;
-            let axes = self
-                .places
-                .iter()
-                .zip(&mut self.hands)
-                .zip(self.core.axes.iter_mut());
-            for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == spindle.axis) {
-                let state = turn(&spindle, hand, unit, time_s);
-                let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
-                self.memory.show_spindle(number, rpm, state);
-            }
+/// P11640: spindles turn as they are ordered [002:6575-6627].
+fn turn_spindles(machine: &mut Machine) {
+    for number in 1..=WHEELS {
+        let Some(spindle) = machine.memory.spindle(number) else {
+            continue;
+        };
+        let time_s = f64::from(machine.core.timing.contour_us()) * 1e-6;
+        let axes = machine
+            .places
+            .iter()
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter_mut());
+        for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == spindle.axis) {
+            let state = turn(&spindle, hand, unit, time_s);
+            let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
+            machine.memory.show_spindle(number, rpm, state);
         }
     }
 }

@@ -32,15 +32,18 @@
 
 mod answers;
 mod axis_parameters;
+mod axis_state;
 mod branch;
 mod channel;
 mod command;
 mod control;
+mod cycle;
 mod enable;
 mod hand;
 mod machine;
 mod message;
 mod monitor;
+mod plc;
 mod setup;
 mod status;
 mod transfer;

@@ -1,23 +1,17 @@
 //! The machine side: all axes, the circuit, the channels, and what the kernel's clock asks of them.
 
-use bahn_kernel::{
-    Axes, AxisUnit, Came, Circuit, CircuitOrder, Core, EmergencyStop, Family, Feeder, Mover, Now, Run,
-    RunFamily, RunFault,
-};
-use bahn_motion::Stop;
+use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
 use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
-use bahn_path::{LiveData, Position};
-use bahn_servo::{Commands, Measured};
+use bahn_path::Position;
 use bahn_system900::{ChannelParameter, Memory};
 
 use crate::answers::Answers;
+use crate::axis_state::{AxisPlace, Hand, Watch};
 use crate::channel::{Channel, Site};
-use crate::hand::Hand;
 use crate::message::{Kind, Message, Messages};
-use crate::monitor::Watch;
 use crate::setup::Setup;
 use crate::transfer::Transfers;
-use crate::units::{self, AxisPlace};
+use crate::units;
 
 /// The circuit is not tested at power-on: the manual names no test (inferred).
 const NO_TEST: EmergencyStopTest = EmergencyStopTest {
@@ -43,9 +37,9 @@ pub(crate) struct Machine {
     pub now_us: u64,
     pub plc_us: u64,
     /// When the PLC is due.
-    scan_us: u64,
+    pub scan_us: u64,
     /// Positions at power-on were taken.
-    begun: bool,
+    pub begun: bool,
 }
 
 impl Machine {
@@ -81,7 +75,6 @@ impl Machine {
         };
         machine.messages.reserve();
         machine.transfers.reserve();
-        machine.show_at_start();
         machine
     }
 
@@ -244,7 +237,7 @@ impl Machine {
     }
 
     /// Nothing of a run is left; its axes come down on their ramps.
-    fn leave(&mut self, k: usize) {
+    pub fn leave(&mut self, k: usize) {
         let Some((run, _, mut site)) = self.parts(k) else {
             return;
         };
@@ -260,179 +253,8 @@ impl Machine {
         }
     }
 
-    /// What a program has come to after its path.
-    fn take(&mut self, k: usize, stop: Stop<RunFault>) {
-        match stop {
-            Stop::Barrier(_) => {
-                let Some((run, _, mut site)) = self.parts(k) else {
-                    return;
-                };
-                let here = site.acting().here();
-                run.go_on_with(LiveData::default(), here);
-            }
-            Stop::End => {
-                let number = k as u8 + 1;
-                for parameter in [ChannelParameter::BrokenProgram, ChannelParameter::BrokenBlock] {
-                    self.memory.set_channel(number, parameter, 0);
-                }
-                self.leave(k);
-                if let Some((run, ..)) = self.parts(k) {
-                    run.end();
-                }
-            }
-            Stop::Error(fault) => self.fail(k, &fault),
-        }
+    /// All axes of a channel are referenced.
+    pub(crate) fn is_referenced(&self, k: usize) -> bool {
+        self.core.axes.owned(k).all(|unit| unit.referenced)
     }
-
-    /// A fault of a program: a message at its block, P8910 and P8911.
-    fn fail(&mut self, k: usize, fault: &RunFault) {
-        let number = k as u8 + 1;
-        let (block, axis, text) = match fault {
-            RunFault::Program(error) => (error.block.block, None, error.detail.clone()),
-            RunFault::Limit { axis, block, .. } => {
-                (block.block, Some(*axis), format!("software limit of {axis}"))
-            }
-            RunFault::Absent { axis, block, .. } => {
-                (block.block, Some(*axis), format!("there is no axis {axis}"))
-            }
-        };
-        let logical = axis.and_then(|axis| {
-            let unit = self.core.axes.owned(k).find(|unit| unit.axis == axis)?;
-            Some(unit.index as u8 + 1)
-        });
-        let program = self
-            .memory
-            .of_channel(number, ChannelParameter::Program)
-            .whole()
-            .unwrap_or(0);
-        self.memory
-            .set_channel(number, ChannelParameter::FaultProgram, program);
-        self.memory
-            .set_channel(number, ChannelParameter::FaultBlock, block.into());
-        self.say(0, number, logical, Kind::High, text.into());
-        self.break_off(k);
-    }
-
-    /// Moves the axes of a channel for a cycle.
-    fn move_channel(&mut self, k: usize) {
-        let wanted = self
-            .channels
-            .get_mut(k)
-            .map(|channel| std::mem::take(&mut channel.wanted));
-        let wanted = wanted.unwrap_or_default();
-        if wanted.abort {
-            self.break_off(k);
-        }
-        let held = self.is_locked(k);
-        let Some(demands) = self.channels.get(k).map(|channel| channel.demands(held)) else {
-            return;
-        };
-        let Some((run, _, mut site)) = self.parts(k) else {
-            return;
-        };
-        if wanted.stop {
-            run.stop();
-        } else if wanted.start {
-            run.start(&mut site);
-        }
-        if run.may_move(|_| false, &mut site.acting()) {
-            match run.moves(&demands, &mut site) {
-                Came::On | Came::NoThread => {}
-                Came::BlockEnd => run.end_block(demands.single_block, false),
-                Came::Refused(_) => self.break_off(k),
-                Came::Stop(stop) => self.take(k, stop),
-            }
-        }
-        let Some((run, feeder, mut site)) = self.parts(k) else {
-            return;
-        };
-        run.move_back(feeder, &mut site);
-        let time_s = site.now.time_s;
-        if !run.progress().is_on_its_way() {
-            site.axes.release(|mover| mover == Mover::Path);
-        }
-        site.axes.slow_down(time_s);
-    }
-}
-
-impl Family for Machine {
-    fn core(&mut self) -> &mut Core {
-        &mut self.core
-    }
-
-    fn begin_step(&mut self, _: &Measured) {
-        if !std::mem::replace(&mut self.begun, true) {
-            self.take_positions();
-        }
-    }
-
-    fn looks_at_inputs(&mut self, at_us: u64) -> bool {
-        at_us >= self.scan_us
-    }
-
-    fn scan_is_due(&mut self, now_us: u64) -> bool {
-        self.now_us = now_us;
-        now_us >= self.scan_us
-    }
-
-    fn scan(&mut self, _: &Measured, _: &mut Commands) {
-        self.scan_us = self.now_us + self.plc_us;
-        self.answer();
-    }
-
-    fn output(&mut self, _: &mut Commands) {}
-
-    fn pass(&mut self, now_us: u64) {
-        self.now_us = now_us;
-    }
-
-    fn circuit_order(&mut self) -> CircuitOrder {
-        match self.core.emergency.circuit() {
-            Circuit::Ready if !self.core.loops_closed => CircuitOrder::CloseLoops,
-            Circuit::EmergencyStop => CircuitOrder::Stop,
-            _ => CircuitOrder::Nothing,
-        }
-    }
-
-    fn stop(&mut self, _: bool) {
-        let text = "EMERGENCY STOP";
-        self.say(0, 1, None, Kind::System, text.into());
-    }
-
-    fn come_to_a_stand(&mut self) -> bool {
-        self.core.axes.iter().all(AxisUnit::stands)
-    }
-
-    fn loops_closed(&mut self) {}
-
-    fn loops_open(&mut self) {
-        for channel in &mut self.channels {
-            channel.run.track.halt();
-        }
-    }
-
-    fn follow_loops(&mut self, _: &Measured) {
-        self.follow_enables();
-    }
-
-    fn move_axes(&mut self, measured: &Measured) {
-        for k in 0..self.channels.len() {
-            self.move_channel(k);
-        }
-        self.move_by_hand(measured);
-    }
-
-    fn settle(&mut self) {}
-
-    fn rest(&mut self, _: &Measured) {
-        for channel in &mut self.channels {
-            channel.wanted = Default::default();
-        }
-    }
-
-    fn transfer(&mut self) {
-        self.follow_branches();
-    }
-
-    fn end_cycle(&mut self, _: &Measured) {}
 }

@@ -4,95 +4,93 @@ use bahn_kernel::{AxisUnit, RunState};
 use bahn_path::{Curve, Direction, FeedRate};
 use bahn_system900::{AxisParameter, ChannelParameter, Memory, Place};
 
+use crate::axis_state::AxisPlace;
 use crate::machine::Machine;
-use crate::units::AxisPlace;
 
 /// Decimals of speeds and voltages.
 const DECIMALS: u8 = 3;
 
-impl Machine {
-    /// What is known at power-on.
-    pub(crate) fn show_at_start(&mut self) {
-        for number in 1..=self.memory.channels() {
-            let (count, last) = self
-                .memory
-                .axes_of(number)
-                .fold((0, 0), |(count, last), (logical, _)| {
-                    (count + 1, i64::from(logical).max(last))
-                });
-            for (parameter, value) in [
-                (ChannelParameter::ChannelNumber, i64::from(number)),
-                (ChannelParameter::AxisCount, count),
-                (ChannelParameter::LastAxis, last),
-                (ChannelParameter::ProgramState, 0),
-                (ChannelParameter::Mode, 1),
-                (ChannelParameter::ModeRequest, 1),
-            ] {
-                self.memory.set_channel(number, parameter, value);
-            }
+/// What is known at power-on.
+pub(crate) fn show_at_start(machine: &mut Machine) {
+    for number in 1..=machine.memory.channels() {
+        let (count, last) = machine
+            .memory
+            .axes_of(number)
+            .fold((0, 0), |(count, last), (logical, _)| {
+                (count + 1, i64::from(logical).max(last))
+            });
+        for (parameter, value) in [
+            (ChannelParameter::ChannelNumber, i64::from(number)),
+            (ChannelParameter::AxisCount, count),
+            (ChannelParameter::LastAxis, last),
+            (ChannelParameter::ProgramState, 0),
+            (ChannelParameter::Mode, 1),
+            (ChannelParameter::ModeRequest, 1),
+        ] {
+            machine.memory.set_channel(number, parameter, value);
         }
     }
+}
 
-    /// Stores what a cycle has changed.
-    pub(crate) fn show(&mut self) {
-        let decimals = self.memory.position_decimals(1);
-        for (place, unit) in self.places.iter().zip(self.core.axes.iter()) {
-            show_axis(&mut self.memory, place, unit, decimals);
-        }
-        for k in 0..self.channels.len() {
-            self.show_channel(k);
-        }
+/// Stores what a cycle has changed.
+pub(crate) fn show(machine: &mut Machine) {
+    let decimals = machine.memory.position_decimals(1);
+    for (place, unit) in machine.places.iter().zip(machine.core.axes.iter()) {
+        show_axis(&mut machine.memory, place, unit, decimals);
     }
+    for k in 0..machine.channels.len() {
+        show_channel(machine, k);
+    }
+}
 
-    fn show_channel(&mut self, k: usize) {
-        let referenced = self.is_referenced(k);
-        let Some(channel) = self.channels.get(k) else {
-            return;
-        };
-        let (number, memory) = (channel.number, &mut self.memory);
-        let state = match channel.run.progress().state() {
-            _ if !channel.run.progress().is_on_its_way() => 0,
-            RunState::Idle | RunState::Running => 2,
-            RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => 1,
-        };
-        memory.set_channel(number, ChannelParameter::ProgramState, state);
-        memory.set_channel(number, ChannelParameter::AllReferenced, i64::from(referenced));
-        let mut speed = channel.run.track.speed_mm_s() * 60.0;
-        if state == 0 {
-            speed = 0.0;
-        }
-        if let Some(place) = memory.channel_place(number, ChannelParameter::ActualFeed) {
-            memory.store(place, Some(speed), DECIMALS);
-        }
-        let Some(element) = channel.run.element() else {
-            return;
-        };
-        let program = memory
-            .of_channel(number, ChannelParameter::Program)
-            .whole()
-            .unwrap_or(0);
-        memory.set_channel(number, ChannelParameter::ActualProgram, program);
-        memory.set_channel(number, ChannelParameter::ActualBlock, element.block.block.into());
-        let interpolation = match (&element.curve, element.feed) {
-            (Curve::Arc(arc), _) if arc.sweep_deg < 0.0 => 2,
-            (Curve::Arc(_), _) => 3,
-            (_, FeedRate::Rapid) => 0,
-            _ => 1,
-        };
-        memory.set_channel(number, ChannelParameter::Interpolation, interpolation);
-        if let (FeedRate::Programmed(feed), Some(place)) = (
-            element.feed,
-            memory.channel_place(number, ChannelParameter::ProgrammedFeed),
-        ) {
-            memory.store(place, Some(feed), DECIMALS);
-        }
-        // Where the block leads the axes.
-        let decimals = memory.position_decimals(number);
-        for (place, unit) in self.places.iter().zip(self.core.axes.iter()) {
-            let end = element.end[unit.axis];
-            if usize::from(place.channel) == k && !unit.is_plc_axis() && end.is_finite() {
-                show_programmed(memory, place, end, decimals);
-            }
+fn show_channel(machine: &mut Machine, k: usize) {
+    let referenced = machine.is_referenced(k);
+    let Some(channel) = machine.channels.get(k) else {
+        return;
+    };
+    let (number, memory) = (channel.number, &mut machine.memory);
+    let state = match channel.run.progress().state() {
+        _ if !channel.run.progress().is_on_its_way() => 0,
+        RunState::Idle | RunState::Running => 2,
+        RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => 1,
+    };
+    memory.set_channel(number, ChannelParameter::ProgramState, state);
+    memory.set_channel(number, ChannelParameter::AllReferenced, i64::from(referenced));
+    let mut speed = channel.run.track.speed_mm_s() * 60.0;
+    if state == 0 {
+        speed = 0.0;
+    }
+    if let Some(place) = memory.channel_place(number, ChannelParameter::ActualFeed) {
+        memory.store(place, Some(speed), DECIMALS);
+    }
+    let Some(element) = channel.run.element() else {
+        return;
+    };
+    let program = memory
+        .of_channel(number, ChannelParameter::Program)
+        .whole()
+        .unwrap_or(0);
+    memory.set_channel(number, ChannelParameter::ActualProgram, program);
+    memory.set_channel(number, ChannelParameter::ActualBlock, element.block.block.into());
+    let interpolation = match (&element.curve, element.feed) {
+        (Curve::Arc(arc), _) if arc.sweep_deg < 0.0 => 2,
+        (Curve::Arc(_), _) => 3,
+        (_, FeedRate::Rapid) => 0,
+        _ => 1,
+    };
+    memory.set_channel(number, ChannelParameter::Interpolation, interpolation);
+    if let (FeedRate::Programmed(feed), Some(place)) = (
+        element.feed,
+        memory.channel_place(number, ChannelParameter::ProgrammedFeed),
+    ) {
+        memory.store(place, Some(feed), DECIMALS);
+    }
+    // Where the block leads the axes.
+    let decimals = memory.position_decimals(number);
+    for (place, unit) in machine.places.iter().zip(machine.core.axes.iter()) {
+        let end = element.end[unit.axis];
+        if usize::from(place.channel) == k && !unit.is_plc_axis() && end.is_finite() {
+            show_programmed(memory, place, end, decimals);
         }
     }
 }
@@ -195,27 +193,25 @@ fn bits(memory: &mut Memory, physical: u8, parameter: AxisParameter, set: &[bool
     }
 }
 
-impl Machine {
-    /// What a parameter holds, not rounded to its decimals where the control itself computes it.
-    pub(crate) fn exact(&self, place: Place) -> Option<f64> {
-        let own = |parameter: AxisParameter| {
-            let mut axes = self.places.iter().zip(self.core.axes.iter());
-            axes.find(|(of, _)| Memory::axis_place(of.physical, parameter) == Some(place))
-                .map(|(_, unit)| unit)
-        };
-        let of = |parameter, value: fn(&AxisUnit) -> f64| own(parameter).map(value);
-        of(AxisParameter::MachinePosition, |unit| {
+/// What a parameter holds, not rounded to its decimals where the control itself computes it.
+pub(crate) fn exact(machine: &Machine, place: Place) -> Option<f64> {
+    let own = |parameter: AxisParameter| {
+        let mut axes = machine.places.iter().zip(machine.core.axes.iter());
+        axes.find(|(of, _)| Memory::axis_place(of.physical, parameter) == Some(place))
+            .map(|(_, unit)| unit)
+    };
+    let of = |parameter, value: fn(&AxisUnit) -> f64| own(parameter).map(value);
+    of(AxisParameter::MachinePosition, |unit| {
+        unit.shown(unit.servo.actual_mm())
+    })
+    .or_else(|| of(AxisParameter::NominalPosition, |unit| unit.shown(unit.nominal)))
+    .or_else(|| {
+        of(AxisParameter::ActualPosition, |unit| {
             unit.shown(unit.servo.actual_mm())
         })
-        .or_else(|| of(AxisParameter::NominalPosition, |unit| unit.shown(unit.nominal)))
-        .or_else(|| {
-            of(AxisParameter::ActualPosition, |unit| {
-                unit.shown(unit.servo.actual_mm())
-            })
-        })
-        .or_else(|| of(AxisParameter::Lag, |unit| unit.servo.lag_mm()))
-        .or_else(|| of(AxisParameter::NominalSpeed, |unit| unit.speed * 60.0))
-        .or_else(|| of(AxisParameter::Voltage, |unit| unit.servo.volts()))
-        .or_else(|| self.memory.at(place).number())
-    }
+    })
+    .or_else(|| of(AxisParameter::Lag, |unit| unit.servo.lag_mm()))
+    .or_else(|| of(AxisParameter::NominalSpeed, |unit| unit.speed * 60.0))
+    .or_else(|| of(AxisParameter::Voltage, |unit| unit.servo.volts()))
+    .or_else(|| machine.memory.at(place).number())
 }

@@ -9,6 +9,7 @@ use bahn_servo::{IdealAxes, IdealDrive, Timing};
 use bahn_system900::{AxisBlock, Connection, LOGICAL_AXES, Memory, slots};
 
 use crate::axis_parameters::axis_parameters;
+use crate::axis_state::AxisPlace;
 
 /// The longest interpolation cycle, ms.
 const CYCLE_MAX_MS: f64 = 4.0;
@@ -23,18 +24,6 @@ const AFTER_SPINDLE: u8 = 5;
 const CORNER_DEG: f64 = 90.0;
 /// Radial acceleration where nothing limits a circle, m/s² (inferred).
 const RADIAL_M_S2: f64 = 1000.0;
-
-/// An axis as the family knows it beside the kernel.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AxisPlace {
-    /// Its physical number, from 1 on.
-    pub physical: u8,
-    /// Its channel, from 0 on, and its logical number there, from 1 on; 0 when no channel names it.
-    pub channel: u8,
-    pub logical: u8,
-    /// Its settings.
-    pub block: AxisBlock,
-}
 
 /// Cycles of a control.
 pub(crate) fn timing(memory: &Memory) -> Timing {
