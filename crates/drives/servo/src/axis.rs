@@ -297,7 +297,7 @@ impl Axis {
         let velocity = match self.method {
             Method::Lag => {
                 self.run_up.follow(self.profile_mm_min);
-                control
+                self.settings.lag.in_advance(control, self.profile_mm_min)
             }
             Method::Precontrol => {
                 let damping = self.settings.precontrol.damping;

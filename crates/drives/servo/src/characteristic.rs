@@ -68,6 +68,7 @@ mod tests {
             kv_m105: kv,
             kink_factor: factor,
             kink_percent: percent,
+            feed_forward: 0.0,
             monitoring_mm: 3.0,
             emergency_mm: 3.5,
         };

@@ -5,6 +5,8 @@ use crate::plant::{Commands, ENCODERS, Encoder, INPUTS, Measured, OperatorInputs
 /// Axes that stand where they are told to: no drive, no mass, no play. The axis at output 1 has its encoder at X1, and so
 /// on; the circuit "control is ready" closes and opens at once. What a PLC program waits for is set by hand.
 ///
+/// An axis with an [`IdealDrive`] follows its voltage instead, so that it has the lag that its loop leaves it.
+///
 /// It shows what a plant must do, and is a machine for programs in which only the path counts.
 ///
 /// ```
@@ -23,8 +25,23 @@ pub struct IdealAxes {
     pub inputs: [bool; INPUTS],
     /// Override potentiometers and handwheel.
     pub operator: OperatorInputs,
+    /// The drives of axes that follow their voltage, by the number of their encoder; the others follow their position.
+    pub drives: [Option<IdealDrive>; ENCODERS],
+    /// The part of a counting step that an encoder does not count yet.
+    parts: [f64; ENCODERS],
     counts: [i64; ENCODERS],
     ready: bool,
+}
+
+/// A drive that turns its voltage into speed at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdealDrive {
+    /// The nominal value output that it is connected to, from 0.
+    pub output: usize,
+    /// Counting steps of the encoder in a second, for each volt.
+    pub steps_s_volt: f64,
+    /// It does not move any more, whatever its voltage.
+    pub is_dead: bool,
 }
 
 impl Default for IdealAxes {
@@ -37,6 +54,8 @@ impl Default for IdealAxes {
                 spindle_override_percent: 100.0,
                 ..OperatorInputs::default()
             },
+            drives: [None; ENCODERS],
+            parts: [0.0; ENCODERS],
             counts: [0; ENCODERS],
             ready: false,
         }
@@ -59,6 +78,29 @@ impl IdealAxes {
             };
         }
         (measured.control_ready, measured.control_ready_changed_at) = (self.ready, None);
+    }
+
+    /// Turns an encoder by hand by so many steps.
+    pub fn turn(&mut self, encoder: usize, steps: i64) {
+        if let Some(count) = self.counts.get_mut(encoder) {
+            *count += steps;
+        }
+    }
+
+    /// The way that the drive of an encoder makes in a step, whole steps.
+    fn driven(&mut self, encoder: usize, commands: &Commands, step: Step) -> Option<i64> {
+        let drive = (*self.drives.get(encoder)?)?;
+        let volts = commands
+            .axes
+            .get(drive.output)
+            .map_or(0.0, |command| command.volts);
+        let part = self.parts.get_mut(encoder)?;
+        if !drive.is_dead {
+            *part += volts * drive.steps_s_volt * f64::from(step.length_us) * 1e-6;
+        }
+        let whole = part.round();
+        *part -= whole;
+        Some(whole as i64)
     }
 
     /// Where an encoder stands, steps since power-on.
@@ -95,12 +137,16 @@ impl Plant for IdealAxes {
         if step.length_us == 0 {
             return;
         }
-        let places = self.counts.iter_mut().zip(&self.marks);
-        for ((count, mark), (command, encoder)) in
+        let ways: [Option<i64>; ENCODERS] =
+            std::array::from_fn(|encoder| self.driven(encoder, commands, step));
+        let places = self.counts.iter_mut().zip(&self.marks).zip(ways);
+        for (((count, mark), way), (command, encoder)) in
             places.zip(commands.axes.iter().zip(&mut measured.encoders))
         {
             let from = *count;
-            if let Some(position) = command.position_steps.filter(|_| command.enabled) {
+            if let Some(way) = way {
+                *count += way;
+            } else if let Some(position) = command.position_steps.filter(|_| command.enabled) {
                 *count = position.round() as i64;
             }
             let passed = from.min(*count)..from.max(*count);

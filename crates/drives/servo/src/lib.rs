@@ -79,7 +79,7 @@ pub use error_table::ErrorTable;
 pub use fault::{EncoderFault, Fault, GrossFault};
 pub use gantry::Gantry;
 pub use handwheel::{HandwheelInputs, HandwheelKey, HandwheelKeys, WHEELS};
-pub use ideal::IdealAxes;
+pub use ideal::{IdealAxes, IdealDrive};
 pub use marks::DistanceCode;
 pub use measuring::Mark;
 pub use method::Method;

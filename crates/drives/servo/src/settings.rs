@@ -98,12 +98,25 @@ pub struct LagSettings {
     pub kink_factor: f64,
     /// Kink, % of rapid traverse: MP1830, 0 to 100 (old MP181) [000:4918-4925].
     pub kink_percent: f64,
+    /// Part of the speed of the nominal position that is put out in advance, 0 to 1: so much smaller is the lag. 0 on a TNC.
+    pub feed_forward: f64,
     /// Lag at which POSITIONING ERROR comes, mm: MP1710, 0 to 300, recommended 1.2 times the lag at rapid
     /// traverse (old MP175) [000:5208-5215].
     pub monitoring_mm: f64,
     /// Lag at which GROSS POSITIONING ERROR A comes, mm: MP1720, 0 to 300, recommended 1.4 times it (old
     /// MP174) [000:5217-5224].
     pub emergency_mm: f64,
+}
+
+impl LagSettings {
+    /// The speed that the lag gives, with what of the speed of the nominal position is put out in advance, mm/min.
+    #[inline]
+    pub(crate) fn in_advance(&self, control: f64, profile: f64) -> f64 {
+        match self.feed_forward {
+            0.0 => control,
+            part => control + part * profile,
+        }
+    }
 }
 
 /// Operation with feed pre-control.

@@ -2,6 +2,7 @@
 
 use bahn_exchange::Exchange;
 use bahn_kernel::{Acting, AxisId, Chain, Now, Outputs, OwnAxes, RunFamily};
+use bahn_motion::FunctionOutput;
 use bahn_parameters::technology::{ControlAction, Output, Technology};
 use bahn_path::{Axis, ControlFunction, Direction, Function, LiveData, Position, ToolCall, Voltage};
 
@@ -213,7 +214,7 @@ impl<'b> RunFamily<'b> for PathOutputs<'_, 'b> {
 }
 
 impl Outputs for PathOutputs<'_, '_> {
-    fn begin(&mut self) {
+    fn begin(&mut self, _: &FunctionOutput) {
         self.q_transfer.strobe();
     }
 

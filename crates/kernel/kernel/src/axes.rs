@@ -297,7 +297,8 @@ impl OwnAxes<'_> {
             PerAxis::splat(f64::NEG_INFINITY).into(),
             PerAxis::splat(f64::INFINITY).into(),
         ];
-        for unit in self.iter() {
+        // An axis of the PLC has no place in it.
+        for unit in self.iter().filter(|unit| !unit.is_plc_axis()) {
             if let Some([least, greatest]) = unit.limited() {
                 let [min, max] = &mut limits;
                 min[unit.axis] = least;

@@ -10,7 +10,7 @@
 //! - [`Run`] is the run of a program on its track: start, stop, single block, end, [return](Restoration) to the contour. A
 //!   [`RunFamily`] says where it acts and takes its functions; its [`Demands`] come as data.
 //! - [`probing`] and [`ScanMove`] lead a stylus; [`move_by_hand`], [`Leaning`], [`reference`] and [`Positioning`] single axes.
-//!   [`StylusLead`] and [`probing_speed`] are how fast, [`DriveOffsets`] adjusts those of the drives.
+//!   [`LagWatch`] watches their lag, [`is_within_range`] where they are. [`StylusLead`] and [`probing_speed`] are how fast, [`DriveOffsets`] adjusts those of the drives.
 //! - [`block_search`] passes over what stands before the block with which a run begins.
 //! - [`gates`] are the places of a path where functions go out and where it waits for them.
 //! - [`Kinematics`] is how axes stand when the tool is at a place; a [`Chain`] adds [`Offsets`] and what is
@@ -33,6 +33,7 @@
 //! assert_eq!(chain.to_path(&axes)[Axis::X], 0.0);
 //! ```
 
+mod area;
 mod axes;
 mod axis;
 pub mod block_search;
@@ -45,6 +46,7 @@ mod feeder;
 pub mod gantry;
 pub mod gates;
 mod kinematics;
+mod lag_watch;
 mod leaning;
 pub mod loops;
 mod now;
@@ -71,6 +73,7 @@ mod track;
 mod voltage;
 mod way_back;
 
+pub use area::is_within_range;
 pub use axes::{Axes, OwnAxes, first_ids, machine_position, path_positions, units};
 pub use axis::{AxisId, AxisUnit, Coupling, Mover, Operation};
 pub use block_time::BlockTime;
@@ -80,6 +83,7 @@ pub use drive_offsets::DriveOffsets;
 pub use emergency::{Circuit, EmergencyStop};
 pub use feeder::{Feeder, RunFault, program_error};
 pub use kinematics::{Box2, Cartesian, Chain, Kinematics, Offsets, Shares, along_path};
+pub use lag_watch::{LagRule, LagWatch};
 pub use leaning::{Leaning, MAIN, Wish};
 pub use now::Now;
 pub use ordered_axis::AxisOrder;

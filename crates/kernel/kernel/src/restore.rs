@@ -14,9 +14,9 @@
 
 use std::collections::VecDeque;
 
-use bahn_motion::Aim;
+use bahn_motion::{Aim, FunctionOutput, Place};
 use bahn_parameters::operation::RestartParameters;
-use bahn_path::{Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
+use bahn_path::{At, Barrier, ElementSource, Function, PathElement, Position, Step, TechnologyFunction};
 
 use crate::axes::OwnAxes;
 use crate::axis::{AxisUnit, Mover};
@@ -215,7 +215,13 @@ impl PassOver for Scan<'_, '_> {
         }
         let block = *block;
         if let Some(function) = functions.pop_front() {
-            self.family.begin();
+            self.family.begin(&FunctionOutput {
+                element: 0,
+                block: giver.block,
+                sequence: giver.sequence,
+                place: if function.at == At::End { Place::End } else { Place::Start },
+                waits: true,
+            });
             return match self.family.output(&function.function) {
                 true => Ok(Passed::Block),
                 false => Err(ScanEnd::Refused(*giver)),

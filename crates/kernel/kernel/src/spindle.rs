@@ -1,6 +1,10 @@
 //! The loop of a spindle, and what a path asks of it: to be oriented, to lead a thread, to turn on another ramp.
 
-use bahn_parameters::spindle::{SpindleOutput, SpindleParameters};
+use bahn_parameters::spindle::{FreeOutput, SpindleOutput, SpindleParameters, TappingParameters};
+use bahn_servo::spindle_settings::{
+    GEARS, Gear, LeadSettings, OrientationSettings, SpeedCodes, SpindlePolarity, SpindleRamps,
+    SpindleSettings,
+};
 use bahn_servo::{Fault, Measured, Ramp, Spindle, Timing, Way};
 
 /// Degrees per second of one rpm.
@@ -44,6 +48,60 @@ impl SpindleLoop {
             parameters,
             led: false,
         }
+    }
+
+    /// In the place of a spindle where no path leads one.
+    pub fn none(timing: Timing) -> SpindleLoop {
+        let parameters = SpindleParameters {
+            output: SpindleOutput::None,
+            controlled: false,
+            input: 0,
+            free_output: FreeOutput::None,
+            codes: SpeedCodes {
+                min: 0,
+                max: 0,
+                step: 1,
+            },
+            axes_run_on: true,
+            comparator_rpm: None,
+            settings: SpindleSettings {
+                zero_permitted: true,
+                polarity: SpindlePolarity::M3Positive,
+                counts_negative: false,
+                check_amplitude: false,
+                check_edges: false,
+                gears: [Gear::default(); GEARS],
+                min_volts: 0.0,
+                max_volts: 0.0,
+                jog_volts: 0.0,
+                override_percent: [0.0, 100.0],
+                ramps: SpindleRamps {
+                    normal_v_ms: 0.0,
+                    orientation_v_ms: 0.0,
+                    tapping_v_ms: 0.0,
+                    rigid_v_ms: 0.0,
+                },
+                orientation: OrientationSettings {
+                    window_deg: 1.0,
+                    reference_deg: 0.0,
+                    jog_rpm: 0.0,
+                    speed_rpm: 0.0,
+                },
+                lead: LeadSettings {
+                    run_in_deg_min: 0.0,
+                    transient: 0.0,
+                },
+            },
+            tapping: TappingParameters {
+                override_percent: [100.0; 2],
+                reversal_dwell_s: 0.0,
+                coded_lead_s: 0.0,
+                run_on_s: 0.0,
+                window_mm: 0.0,
+                orientation: false,
+            },
+        };
+        SpindleLoop::new(SpindleWiring::default(), parameters, timing)
     }
 
     /// Takes changed machine parameters over.

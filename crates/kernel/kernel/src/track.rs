@@ -28,8 +28,8 @@ const OUTPUTS: usize = 64;
 
 /// Who takes the functions of the path, once the axes are where the functions act.
 pub trait Outputs {
-    /// A block gives its functions now; they follow in their order.
-    fn begin(&mut self);
+    /// A block gives its functions at a place now; they follow in their order.
+    fn begin(&mut self, at: &FunctionOutput);
 
     /// The block that was begun gives a function. Whether it is taken: one that is not is refused, and its block with it.
     fn output(&mut self, function: &Function) -> bool;
@@ -306,7 +306,7 @@ impl Track {
                 return;
             }
             self.waiting.pop_front();
-            outputs.begin();
+            outputs.begin(&output);
             let mut functions = self.path.functions(&output);
             // What comes after a function that is refused does not go out.
             let taken = functions.all(|function| match function.function {

@@ -13,7 +13,7 @@ use bahn_kernel::{
     EmergencyStop, Family, Feeder, HandMove, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, RunFault,
     RunState, SpindleLoop, SpindleWiring, Track, move_by_hand,
 };
-use bahn_motion::{Limits, Stop};
+use bahn_motion::{FunctionOutput, Limits, Stop};
 use bahn_parameters::{ControlModel, EmergencyStopTest, ParameterList, PerPlcAxis};
 use bahn_path::{Axis, AxisSet, Barrier, Function, LiveData, PerAxis, Position, Touch, Voltage};
 use bahn_servo::{Commands, IdealAxes, Measured, Plant, Step};
@@ -48,7 +48,7 @@ struct Site<'a> {
 }
 
 impl Outputs for Site<'_> {
-    fn begin(&mut self) {}
+    fn begin(&mut self, _: &FunctionOutput) {}
 
     fn output(&mut self, function: &Function) -> bool {
         if *function == Function::M(CLAMP) {

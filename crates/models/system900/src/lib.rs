@@ -31,15 +31,23 @@
 )]
 
 mod array;
+mod axis_block;
+mod channel_block;
 mod check;
 mod descriptor;
 mod edit;
 mod file;
+mod live;
 mod m_functions;
+mod m_table;
 mod memory;
 mod name;
+mod numbered;
 mod numbers;
+mod path_block;
 mod reports;
+mod shared_block;
+mod slots;
 mod status;
 mod table;
 mod tools;
@@ -47,14 +55,21 @@ mod value;
 mod zero;
 
 pub use array::{Cell, PARAMETERS_MAX, PARAMETERS_MIN};
+pub use axis_block::{AxisBlock, AxisParameter, Connection};
+pub use channel_block::ChannelParameter;
 pub use check::{Channel, ChannelAxis, Checked, check};
 pub use descriptor::AxisWord;
 pub use edit::Change;
 pub use file::DataFile;
-pub use m_functions::{Acts, M_MAX, MFunction, m_number};
+pub use live::Meaning;
+pub use m_functions::{Acts, M_MAX, MFunction, MRule, m_number};
+pub use m_table::MTable;
 pub use memory::{Memory, Place, SpaceError};
 pub use name::{Name, NoName};
+pub use path_block::{PathParameter, PathTool};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
+pub use shared_block::{CouplingBlock, HandwheelBlock, SharedParameter, SpindleBlock, Together};
+pub use slots::{LOGICAL_AXES, slots};
 pub use status::{LOCKS, NoStatus, Receivers, Status};
 pub use table::{Effect, Needs, Row, row, rows};
 pub use tools::{Tool, Tools};

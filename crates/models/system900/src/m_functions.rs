@@ -87,6 +87,19 @@ pub struct MFunction {
     pub restart: bool,
 }
 
+/// How an M function acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MRule {
+    /// How.
+    pub acts: Acts,
+    /// Before the path of its block.
+    pub before: bool,
+    /// After it.
+    pub after: bool,
+    /// The look-ahead waits for it.
+    pub sync: bool,
+}
+
 /// The number of an M function that somebody writes: `M7`, `m07`; `None` for others and above M999.
 pub fn m_number(text: &str) -> Option<u16> {
     let digits = text.trim().strip_prefix(['M', 'm'])?;
@@ -98,32 +111,33 @@ pub fn m_number(text: &str) -> Option<u16> {
 impl MFunction {
     /// The definition that counts in a channel.
     pub fn of(memory: &Memory, channel: u8, m: u16) -> MFunction {
-        let own = memory.descriptor(channel).entry(M_BLOCK).whole().unwrap_or(0);
-        let quarter = u32::from(m / 4);
-        let number = match own == 0 && m <= OF_SYSTEM_MAX {
-            true => M_OF_SYSTEM + quarter,
-            false => M_OF_CHANNEL + quarter,
-        };
-        // Those of the system belong to no channel.
-        let owner = if number >= M_OF_SYSTEM { 1 } else { channel };
-        let name = Name::P(owner, number);
-        let bytes = memory.cell(name).ok().and_then(|cell| cell.bits());
-        let bytes = bytes.unwrap_or(0).to_le_bytes();
-        let bits = bytes.get(usize::from(m % 4)).copied().unwrap_or(0);
-        let acts = acts(m, bits);
-        let goes_out = matches!(acts, Acts::Flying | Acts::Stop);
-        let is_alone = matches!(acts, Acts::Branch | Acts::Cycle);
-        let has = |bit: u8| bits & bit != 0;
+        let name = definition(memory, channel, m);
+        let bits = bits_of(memory, channel, m);
+        let rule = MFunction::rule(m, bits);
         MFunction {
             m,
             parameter: name.to_string(),
             byte: (m % 4) as u8 + 1,
             bits,
+            acts: rule.acts,
+            before: rule.before,
+            after: rule.after,
+            sync: rule.sync,
+            restart: !matches!(rule.acts, Acts::Branch | Acts::Cycle) && bits & RESTART != 0,
+        }
+    }
+
+    /// How a function acts whose definition is a byte.
+    pub fn rule(m: u16, bits: u8) -> MRule {
+        let acts = acts(m, bits);
+        let goes_out = matches!(acts, Acts::Flying | Acts::Stop);
+        let is_alone = matches!(acts, Acts::Branch | Acts::Cycle);
+        let has = |bit: u8| bits & bit != 0;
+        MRule {
             acts,
             before: acts == Acts::Branch || goes_out && has(BEFORE),
             after: acts == Acts::Cycle || goes_out && has(AFTER),
             sync: !is_alone && has(SYNC),
-            restart: !is_alone && has(RESTART),
         }
     }
 
@@ -152,6 +166,26 @@ impl MFunction {
             _ => None,
         }
     }
+}
+
+/// The parameter that defines a function of a channel.
+fn definition(memory: &Memory, channel: u8, m: u16) -> Name {
+    let own = memory.descriptor(channel).entry(M_BLOCK).whole().unwrap_or(0);
+    let quarter = u32::from(m / 4);
+    let number = match own == 0 && m <= OF_SYSTEM_MAX {
+        true => M_OF_SYSTEM + quarter,
+        false => M_OF_CHANNEL + quarter,
+    };
+    // Those of the system belong to no channel.
+    let owner = if number >= M_OF_SYSTEM { 1 } else { channel };
+    Name::P(owner, number)
+}
+
+/// The byte that defines a function of a channel.
+pub(crate) fn bits_of(memory: &Memory, channel: u8, m: u16) -> u8 {
+    let cell = memory.cell(definition(memory, channel, m)).ok();
+    let bytes = cell.and_then(|cell| cell.bits()).unwrap_or(0).to_le_bytes();
+    bytes.get(usize::from(m % 4)).copied().unwrap_or(0)
 }
 
 fn acts(m: u16, bits: u8) -> Acts {

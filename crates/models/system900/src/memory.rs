@@ -137,6 +137,15 @@ impl Memory {
         }
     }
 
+    /// Without any parameter.
+    pub(crate) fn of_nothing() -> Memory {
+        Memory {
+            array: Array::new(0),
+            of_channels: Array::new(0),
+            locks: [false; LOCKS as usize],
+        }
+    }
+
     /// How many system parameters there are.
     pub fn count(&self) -> usize {
         self.array.len()
@@ -304,7 +313,7 @@ impl Memory {
         Ok(self.at(self.place(name)?))
     }
 
-    fn put(&mut self, place: Place, cell: Cell) {
+    pub(crate) fn put(&mut self, place: Place, cell: Cell) {
         let slot = match place {
             Place::Q(number) => self.array.slot(number as usize),
             Place::OfChannel(channel, logical, offset) => {

@@ -358,6 +358,7 @@ fn lag(axis: &AxisReader) -> LagSettings {
         kv_m105: axis.new_or(1815, || kv),
         kink_factor: axis.old_common(1820, 176),
         kink_percent: axis.old_common(1830, 181),
+        feed_forward: 0.0,
         monitoring_mm: axis.old_common(1710, 175),
         emergency_mm: axis.old_common(1720, 174),
     }

@@ -10,7 +10,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("house", &[]),
     ("servo", &[]),
     ("parameters", &["text", "path", "servo"]),
-    ("system900", &["text"]),
+    ("system900", &["text", "path"]),
     ("program", &["text", "path", "parameters"]),
     ("dialogue", &["path", "parameters", "program"]),
     ("reader", &["text", "path", "parameters", "program"]),
@@ -26,6 +26,18 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "technology",
         &["text", "path", "motion", "din", "kernel", "script"],
+    ),
+    (
+        "control900",
+        &[
+            "path",
+            "parameters",
+            "system900",
+            "reader",
+            "motion",
+            "servo",
+            "kernel",
+        ],
     ),
     ("workpiece", &["path", "picture"]),
     ("viewer", &["path", "workpiece"]),

@@ -1,0 +1,237 @@
+//! A channel: its program on its track, and what the operator and the PLC want of it.
+
+use std::sync::Arc;
+
+use bahn_kernel::{
+    Acting, Cartesian, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop,
+    Track,
+};
+use bahn_motion::{FunctionOutput, Limits, Place};
+use bahn_path::{Axis, BlockRef, Function, LiveData, Position, Voltage};
+use bahn_reader::Reader;
+use bahn_servo::Timing;
+use bahn_system900::{Acts, ChannelParameter, MTable, Memory};
+
+use crate::transfer::{Transfer, Transfers, When};
+
+/// The modes of a channel [002:3773-3787].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Axes are moved by hand: HAND.
+    #[default]
+    Hand,
+    /// Blocks one after the other.
+    Sequence,
+    /// Each block with its own start.
+    Single,
+    /// Blocks that are entered one by one.
+    Positioning,
+}
+
+impl Mode {
+    /// That of P8703; P8683 prints 3 for single blocks, too.
+    pub fn of(number: i64) -> Option<Mode> {
+        Some(match number {
+            1 => Mode::Hand,
+            2 => Mode::Sequence,
+            3 | 4 => Mode::Single,
+            8 => Mode::Positioning,
+            _ => return None,
+        })
+    }
+
+    /// The number of P8703.
+    pub fn number(self) -> i64 {
+        match self {
+            Mode::Hand => 1,
+            Mode::Sequence => 2,
+            Mode::Single => 4,
+            Mode::Positioning => 8,
+        }
+    }
+}
+
+/// What is wanted of a run and not done yet.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wanted {
+    pub start: bool,
+    pub stop: bool,
+    pub abort: bool,
+}
+
+/// A channel of the control.
+#[derive(Clone)]
+pub(crate) struct Channel {
+    /// From 1 on.
+    pub number: u8,
+    pub run: Run,
+    pub chain: Chain,
+    pub spindle: SpindleLoop,
+    /// What starts.
+    pub program: Option<Box<dyn Reader>>,
+    /// What runs.
+    pub feeder: Option<Feeder>,
+    pub mode: Mode,
+    pub wanted: Wanted,
+    /// How M functions act.
+    pub m: MTable,
+    /// M functions with stop wait for their acknowledgement.
+    pub waits_for_m: bool,
+    /// A branch that waits for its confirmation, until its block is over: the target.
+    pub branch: Option<Branch>,
+    /// The branch was confirmed: the path stops, and goes on there.
+    pub jump: Option<Branch>,
+    /// The axes may move: P8701, P8702.
+    pub axes_enabled: bool,
+    pub safety_stop: bool,
+    pub loops_enabled: bool,
+    /// Override of the path, %.
+    pub override_percent: f64,
+}
+
+/// A branch function on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Branch {
+    /// The block in which it stands, by its place in the order of execution.
+    pub sequence: u64,
+    /// Where the program goes on.
+    pub target: u32,
+}
+
+impl Channel {
+    pub fn new(number: u8, limits: &Limits, timing: Timing, memory: &Memory) -> Channel {
+        let offsets = Offsets {
+            datum: Position::ZERO,
+            tool_axis: Axis::Z,
+            tool_length: 0.0,
+        };
+        Channel {
+            number,
+            run: Run::new(Track::new(limits)),
+            chain: Chain::new(Arc::new(Cartesian), offsets),
+            spindle: SpindleLoop::none(timing),
+            program: None,
+            feeder: None,
+            mode: Mode::Hand,
+            wanted: Wanted::default(),
+            m: MTable::of(memory, number),
+            waits_for_m: false,
+            branch: None,
+            jump: None,
+            axes_enabled: false,
+            safety_stop: false,
+            loops_enabled: false,
+            override_percent: 100.0,
+        }
+    }
+
+    /// What of it a cycle asks of the run.
+    pub fn demands(&self, held: bool) -> Demands {
+        Demands {
+            single_block: matches!(self.mode, Mode::Single | Mode::Positioning),
+            crowded: self.safety_stop || !self.axes_enabled || self.jump.is_some() || held,
+            ..Demands::default()
+        }
+    }
+
+    /// The block that is executed; that of the program where none is.
+    pub fn block(&self) -> BlockRef {
+        self.run
+            .element()
+            .map_or_else(BlockRef::default, |element| element.block)
+    }
+}
+
+/// Where the run of a channel acts.
+pub(crate) struct Site<'a> {
+    pub number: u8,
+    pub axes: OwnAxes<'a>,
+    pub chain: &'a mut Chain,
+    pub spindle: &'a mut SpindleLoop,
+    pub m: &'a MTable,
+    pub waits_for_m: &'a mut bool,
+    pub branch: &'a mut Option<Branch>,
+    pub transfers: &'a mut Transfers,
+    pub memory: &'a mut Memory,
+    /// Where functions go out now.
+    pub at: Option<FunctionOutput>,
+    pub now: Now,
+}
+
+impl Site<'_> {
+    /// An M function goes to the PLC, as its definition says.
+    fn transfer(&mut self, m: u16, target: Option<u32>) {
+        let rule = self.m.rule(m);
+        if matches!(rule.acts, Acts::None | Acts::Cycle) {
+            return;
+        }
+        let place = self.at.map_or(Place::Start, |at| at.place);
+        let branch = rule.acts == Acts::Branch;
+        let stop = branch || rule.acts == Acts::Stop;
+        self.transfers.push(Transfer {
+            time_us: self.now.us,
+            channel: self.number,
+            m,
+            when: match place {
+                Place::End => When::After,
+                Place::Start | Place::Along(_) => When::Before,
+            },
+            stop,
+            branch,
+            block: self.at.map_or(0, |at| at.block.block),
+            ack_us: None,
+            taken: false,
+        });
+        if stop {
+            self.memory
+                .set_channel(self.number, ChannelParameter::BlockRelease, 0);
+        }
+        match (branch, target) {
+            (true, Some(target)) => {
+                let sequence = self.at.map_or(0, |at| at.sequence);
+                *self.branch = Some(Branch { sequence, target });
+            }
+            (true, None) => {}
+            _ if stop => {
+                *self.waits_for_m = true;
+                self.memory
+                    .set_channel(self.number, ChannelParameter::WaitsForM, 1);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Outputs for Site<'_> {
+    fn begin(&mut self, at: &FunctionOutput) {
+        self.at = Some(*at);
+    }
+
+    fn output(&mut self, function: &Function) -> bool {
+        if let Function::M(m) = function {
+            self.transfer(*m, None);
+        }
+        true
+    }
+
+    fn voltage(&mut self, _: Voltage, _: u64) {}
+}
+
+impl<'a> RunFamily<'a> for Site<'a> {
+    fn acting(&mut self) -> Acting<'_, 'a> {
+        Acting {
+            axes: &mut self.axes,
+            chain: self.chain,
+            spindle: self.spindle,
+            now: &self.now,
+        }
+    }
+
+    fn has_transferred(&self) -> bool {
+        !*self.waits_for_m
+    }
+
+    fn answer(&mut self) -> LiveData {
+        LiveData::default()
+    }
+}

@@ -1,0 +1,167 @@
+//! What a write does: keys of the operator, modes, start and stop, answers of the PLC [002:3606-3816].
+//!
+//! Decision: A change to HAND breaks the program off, whose place is kept for a restart [002:4156-4193]
+//!
+//! Decision: Of P8706 counts the write of a value other than 0; while nothing waits it does nothing
+
+use bahn_system900::{AxisParameter, ChannelParameter, Meaning, Place, Together};
+
+use crate::channel::Mode;
+use crate::machine::Machine;
+use crate::{hand, monitor};
+
+/// Values of P8682 [002:3613-3619].
+const KEY_STOP: i64 = 1;
+const KEY_START: i64 = 2;
+
+/// A parameter was written by somebody else than the control.
+pub(crate) fn notice(machine: &mut Machine, place: Place) {
+    match machine.memory.meaning(place) {
+        Meaning::OfChannel(number, parameter) => notice_channel(machine, number, parameter),
+        Meaning::OfAxis(physical, parameter) => notice_axis(machine, physical, parameter),
+        Meaning::Override(number) => machine.memory.show_override(number),
+        Meaning::Nothing => {}
+    }
+}
+
+fn notice_axis(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
+    match parameter {
+        AxisParameter::GoRelative | AxisParameter::GoAbsolute => hand::position(machine, physical, parameter),
+        AxisParameter::Reference => hand::begin_seek(machine, physical),
+        _ => {}
+    }
+}
+
+fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter) {
+    let value = machine.memory.of_channel(number, parameter).whole();
+    let is_set = value.is_some_and(|value| value != 0);
+    match parameter {
+        ChannelParameter::StartKey => press(machine, number, value.unwrap_or(0)),
+        ChannelParameter::ModeRequest => ask_mode(machine, number, value.unwrap_or(0)),
+        ChannelParameter::StartRequest => machine.answers.ask_start(number),
+        ChannelParameter::Mode => take_mode(machine, number, value.unwrap_or(0)),
+        ChannelParameter::Start => take_start(machine, number, value == Some(1)),
+        ChannelParameter::Abort if value == Some(1) => {
+            together(machine, number, Together::Abort, |machine, k| {
+                if let Some(channel) = machine.channels.get_mut(k) {
+                    channel.wanted.abort = true;
+                }
+            })
+        }
+        ChannelParameter::BlockRelease if is_set => release(machine, number),
+        ChannelParameter::Acknowledge => acknowledge(machine, number),
+        ChannelParameter::SystemMessage
+        | ChannelParameter::HighMessage
+        | ChannelParameter::LowMessage
+        | ChannelParameter::DisplayMessage => monitor::order_message(machine, number, parameter),
+        ChannelParameter::ManualMove => hand::begin_by_hand(machine, number),
+        ChannelParameter::NextStep if value == Some(1) => hand::next_step(machine, number),
+        _ => {}
+    }
+}
+
+/// Does something for a channel and all that its networks do it with.
+fn together(machine: &mut Machine, number: u8, what: Together, mut act: impl FnMut(&mut Machine, usize)) {
+    let channels = machine.memory.together(number, what);
+    for k in (0..machine.channels.len()).filter(|k| channels >> k & 1 != 0) {
+        act(machine, k);
+    }
+}
+
+/// P8682: the keys of the operator write P8684; STOP stops the whole network.
+fn press(machine: &mut Machine, number: u8, key: i64) {
+    match key {
+        KEY_START => request_start(machine, number, 1),
+        KEY_STOP => together(machine, number, Together::Stop, |machine, k| {
+            request_start(machine, k as u8 + 1, 0)
+        }),
+        _ => {}
+    }
+}
+
+fn request_start(machine: &mut Machine, number: u8, start: i64) {
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::StartRequest, start);
+    machine.answers.ask_start(number);
+}
+
+/// P8683: the mode is asked for in the whole network.
+fn ask_mode(machine: &mut Machine, number: u8, mode: i64) {
+    together(machine, number, Together::Mode, |machine, k| {
+        let number = k as u8 + 1;
+        machine
+            .memory
+            .set_channel(number, ChannelParameter::ModeRequest, mode);
+        machine.answers.ask_mode(number);
+        if Mode::of(mode) == Some(Mode::Hand) && !machine.memory.acknowledges_apart(number) {
+            acknowledge(machine, number);
+        }
+    });
+}
+
+/// P8703: the channel goes over to a mode.
+fn take_mode(machine: &mut Machine, number: u8, mode: i64) {
+    let Some(mode) = Mode::of(mode) else { return };
+    let k = usize::from(number) - 1;
+    let Some(channel) = machine.channels.get_mut(k) else {
+        return;
+    };
+    let before = std::mem::replace(&mut channel.mode, mode);
+    match (before, mode) {
+        (Mode::Hand, Mode::Hand) => {}
+        // Definitions of M functions take effect with the change from HAND to AUTO [002:2088-2089].
+        (Mode::Hand, _) => channel.m.read(&machine.memory, number),
+        (_, Mode::Hand) => channel.wanted.abort = true,
+        _ => {}
+    }
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::Mode, mode.number());
+}
+
+/// P8704: start, where nothing is in its way, or stop.
+fn take_start(machine: &mut Machine, number: u8, start: bool) {
+    let k = usize::from(number) - 1;
+    let may = may_start(machine, number);
+    let Some(channel) = machine.channels.get_mut(k) else {
+        return;
+    };
+    match start {
+        true if may => channel.wanted.start = true,
+        true => machine.memory.set_channel(number, ChannelParameter::Start, 0),
+        false => channel.wanted.stop = true,
+    }
+}
+
+/// The mode is AUTO, the axes are enabled and referenced, and there is a program.
+pub(crate) fn may_start(machine: &Machine, number: u8) -> bool {
+    let Some(channel) = machine.channels.get(usize::from(number) - 1) else {
+        return false;
+    };
+    let is_set = |parameter| machine.memory.of_channel(number, parameter).whole() == Some(1);
+    channel.mode != Mode::Hand
+        && channel.program.is_some()
+        && is_set(ChannelParameter::AxesEnabled)
+        && is_set(ChannelParameter::Referenced)
+}
+
+/// P8706: M functions with stop are done; else a branch that waits is confirmed.
+fn release(machine: &mut Machine, number: u8) {
+    let Some(channel) = machine.channels.get_mut(usize::from(number) - 1) else {
+        return;
+    };
+    if std::mem::take(&mut channel.waits_for_m) {
+        machine.transfers.acknowledge(number, machine.now_us);
+        machine.memory.set_channel(number, ChannelParameter::WaitsForM, 0);
+    } else if let Some(branch) = channel.branch.take() {
+        channel.jump = Some(branch);
+        machine.transfers.branch(number, machine.now_us);
+    }
+}
+
+/// P8508, or the change to HAND: what is shown is acknowledged.
+fn acknowledge(machine: &mut Machine, number: u8) {
+    machine.messages.acknowledge(number, machine.now_us);
+    machine.core.emergency.clear();
+}

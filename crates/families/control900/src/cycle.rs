@@ -1,0 +1,189 @@
+//! A cycle of the machine, as the kernel's clock orders it.
+
+use bahn_kernel::{AxisUnit, Came, Circuit, CircuitOrder, Core, Family, Mover, RunFamily, RunFault};
+use bahn_motion::Stop;
+use bahn_path::LiveData;
+use bahn_servo::{Commands, Measured};
+use bahn_system900::ChannelParameter;
+
+use crate::machine::Machine;
+use crate::message::Kind;
+use crate::{branch, enable, hand, plc};
+
+impl Family for Machine {
+    fn core(&mut self) -> &mut Core {
+        &mut self.core
+    }
+
+    fn begin_step(&mut self, _: &Measured) {
+        if !std::mem::replace(&mut self.begun, true) {
+            enable::take_positions(self);
+        }
+    }
+
+    fn looks_at_inputs(&mut self, at_us: u64) -> bool {
+        at_us >= self.scan_us
+    }
+
+    fn scan_is_due(&mut self, now_us: u64) -> bool {
+        self.now_us = now_us;
+        now_us >= self.scan_us
+    }
+
+    fn scan(&mut self, _: &Measured, _: &mut Commands) {
+        self.scan_us = self.now_us + self.plc_us;
+        plc::answer(self);
+    }
+
+    fn output(&mut self, _: &mut Commands) {}
+
+    fn pass(&mut self, now_us: u64) {
+        self.now_us = now_us;
+    }
+
+    fn circuit_order(&mut self) -> CircuitOrder {
+        match self.core.emergency.circuit() {
+            Circuit::Ready if !self.core.loops_closed => CircuitOrder::CloseLoops,
+            Circuit::EmergencyStop => CircuitOrder::Stop,
+            _ => CircuitOrder::Nothing,
+        }
+    }
+
+    fn stop(&mut self, _: bool) {
+        let text = "EMERGENCY STOP";
+        self.say(0, 1, None, Kind::System, text.into());
+    }
+
+    fn come_to_a_stand(&mut self) -> bool {
+        self.core.axes.iter().all(AxisUnit::stands)
+    }
+
+    fn loops_closed(&mut self) {}
+
+    fn loops_open(&mut self) {
+        for channel in &mut self.channels {
+            channel.run.track.halt();
+        }
+    }
+
+    fn follow_loops(&mut self, _: &Measured) {
+        enable::follow_enables(self);
+    }
+
+    fn move_axes(&mut self, measured: &Measured) {
+        for k in 0..self.channels.len() {
+            move_channel(self, k);
+        }
+        hand::move_axes(self, measured);
+    }
+
+    fn settle(&mut self) {}
+
+    fn rest(&mut self, _: &Measured) {
+        for channel in &mut self.channels {
+            channel.wanted = Default::default();
+        }
+    }
+
+    fn transfer(&mut self) {
+        branch::follow_branches(self);
+    }
+
+    fn end_cycle(&mut self, _: &Measured) {}
+}
+
+/// What a program has come to after its path.
+fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
+    match stop {
+        Stop::Barrier(_) => {
+            let Some((run, _, mut site)) = machine.parts(k) else {
+                return;
+            };
+            let here = site.acting().here();
+            run.go_on_with(LiveData::default(), here);
+        }
+        Stop::End => {
+            let number = k as u8 + 1;
+            for parameter in [ChannelParameter::BrokenProgram, ChannelParameter::BrokenBlock] {
+                machine.memory.set_channel(number, parameter, 0);
+            }
+            machine.leave(k);
+            if let Some((run, ..)) = machine.parts(k) {
+                run.end();
+            }
+        }
+        Stop::Error(fault) => fail(machine, k, &fault),
+    }
+}
+
+/// A fault of a program: a message at its block, P8910 and P8911.
+fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
+    let number = k as u8 + 1;
+    let (block, axis, text) = match fault {
+        RunFault::Program(error) => (error.block.block, None, error.detail.clone()),
+        RunFault::Limit { axis, block, .. } => {
+            (block.block, Some(*axis), format!("software limit of {axis}"))
+        }
+        RunFault::Absent { axis, block, .. } => {
+            (block.block, Some(*axis), format!("there is no axis {axis}"))
+        }
+    };
+    let logical = axis.and_then(|axis| {
+        let unit = machine.core.axes.owned(k).find(|unit| unit.axis == axis)?;
+        Some(unit.index as u8 + 1)
+    });
+    let program = machine
+        .memory
+        .of_channel(number, ChannelParameter::Program)
+        .whole()
+        .unwrap_or(0);
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::FaultProgram, program);
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::FaultBlock, block.into());
+    machine.say(0, number, logical, Kind::High, text.into());
+    machine.break_off(k);
+}
+
+/// Moves the axes of a channel for a cycle.
+fn move_channel(machine: &mut Machine, k: usize) {
+    let wanted = machine
+        .channels
+        .get_mut(k)
+        .map(|channel| std::mem::take(&mut channel.wanted));
+    let wanted = wanted.unwrap_or_default();
+    if wanted.abort {
+        machine.break_off(k);
+    }
+    let held = enable::is_locked(machine, k);
+    let Some(demands) = machine.channels.get(k).map(|channel| channel.demands(held)) else {
+        return;
+    };
+    let Some((run, _, mut site)) = machine.parts(k) else {
+        return;
+    };
+    if wanted.stop {
+        run.stop();
+    } else if wanted.start {
+        run.start(&mut site);
+    }
+    if run.may_move(|_| false, &mut site.acting()) {
+        match run.moves(&demands, &mut site) {
+            Came::On | Came::NoThread => {}
+            Came::BlockEnd => run.end_block(demands.single_block, false),
+            Came::Refused(_) => machine.break_off(k),
+            Came::Stop(stop) => take(machine, k, stop),
+        }
+    }
+    let Some((run, feeder, mut site)) = machine.parts(k) else {
+        return;
+    };
+    run.move_back(feeder, &mut site);
+    let time_s = site.now.time_s;
+    if !run.progress().is_on_its_way() {
+        site.axes.release(|mover| mover == Mover::Path);
+    }
+    site.axes.slow_down(time_s);
+}

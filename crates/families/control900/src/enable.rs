@@ -1,0 +1,114 @@
+//! What holds the loops and lets the axes move: P8700, P8701, P8702, P8891, clamps [002:3752-3767].
+
+use bahn_kernel::AxisUnit;
+use bahn_system900::{AxisParameter, ChannelParameter, Memory};
+
+use crate::machine::Machine;
+
+/// Absolute axes are where they were at power-off [002:7012-7022].
+pub(crate) fn take_positions(machine: &mut Machine) {
+    let places = machine.places.iter();
+    for (unit, place) in machine.core.axes.iter_mut().zip(places) {
+        if place.block.is_absolute {
+            let kept = machine
+                .memory
+                .of_axis(place.physical, AxisParameter::ActualPosition);
+            let count = unit.servo.count();
+            unit.set_datum(count, kept.number().unwrap_or(0.0));
+            unit.referenced = true;
+        }
+        unit.transfer();
+    }
+}
+
+/// Takes the enables of the PLC, opens and closes the loops as they say.
+pub(crate) fn follow_enables(machine: &mut Machine) {
+    for channel in &mut machine.channels {
+        let is_set = |parameter| {
+            let cell = machine.memory.of_channel(channel.number, parameter);
+            cell.whole().unwrap_or(0) != 0
+        };
+        channel.loops_enabled = is_set(ChannelParameter::LoopsEnabled);
+        channel.axes_enabled = is_set(ChannelParameter::AxesEnabled);
+        channel.safety_stop = is_set(ChannelParameter::SafetyStop);
+        let number = machine
+            .memory
+            .of_channel(channel.number, ChannelParameter::PathOverride)
+            .whole();
+        let number = number
+            .and_then(|number| u8::try_from(number).ok())
+            .filter(|number| *number > 0);
+        channel.override_percent = machine.memory.override_percent(number.unwrap_or(1));
+    }
+    let closed = machine.core.loops_closed;
+    let places = machine.places.iter();
+    for (unit, place) in machine.core.axes.iter_mut().zip(places) {
+        let Some(channel) = machine.channels.get(unit.channel) else {
+            continue;
+        };
+        let free = follows(&machine.memory, place.physical);
+        hold(unit, closed && channel.loops_enabled && !free);
+        if unit.enabled != channel.axes_enabled {
+            unit.enabled = channel.axes_enabled;
+            unit.servo.set_enabled(channel.axes_enabled);
+            if !channel.axes_enabled {
+                unit.stand(unit.nominal);
+            }
+        }
+    }
+    for channel in machine
+        .channels
+        .iter_mut()
+        .filter(|channel| !channel.axes_enabled)
+    {
+        // Without dynamics: the path stands where it is.
+        channel.run.track.halt();
+    }
+}
+
+/// P8891: a move of a locked axis is due, or is executed [002:4765-4770].
+pub(crate) fn is_locked(machine: &Machine, k: usize) -> bool {
+    let Some(channel) = machine.channels.get(k) else {
+        return false;
+    };
+    let bits = machine
+        .memory
+        .of_channel(channel.number, ChannelParameter::AxisLock)
+        .bits()
+        .unwrap_or(0);
+    let Some(element) = channel.run.element().filter(|_| bits != 0) else {
+        return false;
+    };
+    let mut own = machine.core.axes.owned(k);
+    own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
+}
+
+/// P12140, P12141: the nominal position is where the axis is [002:8272-8282].
+fn follows(memory: &Memory, physical: u8) -> bool {
+    let first = |parameter| {
+        let bits = memory.of_axis(physical, parameter).bits().unwrap_or(0);
+        bits & 0xFF
+    };
+    let [with, without, ..] = memory
+        .of_axis(physical, AxisParameter::FollowsActual)
+        .bits()
+        .unwrap_or(0)
+        .to_le_bytes();
+    first(AxisParameter::Clamped) == 1 || with == 1 || without == 1
+}
+
+/// Closes the loop of an axis, or opens it.
+fn hold(unit: &mut AxisUnit, closed: bool) {
+    match (closed, unit.servo.closed()) {
+        (true, false) => {
+            unit.transfer();
+            unit.servo.close();
+        }
+        (false, true) => {
+            unit.servo.open();
+            unit.transfer();
+        }
+        (false, false) => unit.transfer(),
+        (true, true) => {}
+    }
+}

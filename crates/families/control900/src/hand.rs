@@ -1,0 +1,389 @@
+//! Single axes beside all paths: direction keys and steps in HAND, positions of the PLC, the reference point, handwheels,
+//! spindles.
+//!
+//! Decision: Keys and steps move axes in HAND alone, with P8755, at most P8754; where neither is loaded as fast as the axis
+//! can
+//!
+//! Decision: An axis that has taken its reference point comes to a stop by itself
+//!
+//! Decision: A relative position counts from the nominal position at the moment of the write
+
+use bahn_kernel::{AxisUnit, HandMove, Mover, Now, move_by_hand, within};
+use bahn_motion::Aim;
+use bahn_path::Direction;
+use bahn_servo::Measured;
+use bahn_system900::{AxisParameter, ChannelParameter, Memory, SpindleBlock};
+
+use crate::axis_state::{AxisPlace, Goal, Hand};
+use crate::channel::Mode;
+use crate::machine::Machine;
+
+/// Degrees per minute of one rpm.
+const DEG_MIN_PER_RPM: f64 = 360.0;
+/// Handwheels, and spindles.
+const WHEELS: u8 = 8;
+/// Steps of the manual table where none is loaded, mm (inferred: their first ones are lost).
+const STEPS_MM: [f64; 7] = [10.0, 1.0, 0.1, 0.01, 0.001, 0.0, 0.0];
+
+/// P8752: the axis of P8751 moves as P8750 says [002:3983-4009].
+pub(crate) fn begin_by_hand(machine: &mut Machine, number: u8) {
+    let of = |parameter| machine.memory.of_channel(number, parameter);
+    let direction = match of(ChannelParameter::ManualMove).whole() {
+        Some(1) => Some(Direction::Plus),
+        Some(2) => Some(Direction::Minus),
+        _ => None,
+    };
+    let feed = manual_feed(machine, number);
+    let is_step = of(ChannelParameter::ManualMode).whole() == Some(2);
+    let step = step_mm(machine, number);
+    let logical = of(ChannelParameter::ManualAxis).whole().unwrap_or(0);
+    let is_hand = machine
+        .channels
+        .get(usize::from(number) - 1)
+        .is_some_and(|channel| channel.mode == Mode::Hand);
+    let places = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter());
+    for ((place, hand), unit) in places.filter(|((place, _), _)| place.channel + 1 == number) {
+        let is_meant = i64::from(place.logical) == logical && is_hand;
+        hand.key = None;
+        match direction.filter(|_| is_meant) {
+            Some(direction) if is_step && hand.goal.is_none() => {
+                let (position, _) = within(unit, unit.nominal + direction.sign() * step);
+                hand.goal = Some(Goal {
+                    position,
+                    feed_mm_min: feed,
+                    reports: None,
+                });
+            }
+            Some(direction) if !is_step => hand.key = Some((direction, feed)),
+            _ => {}
+        }
+    }
+}
+
+/// The feed by hand, mm/min.
+fn manual_feed(machine: &Machine, number: u8) -> f64 {
+    let of = |parameter| {
+        let feed = machine.memory.of_channel(number, parameter).number();
+        feed.filter(|feed| *feed > 0.0).unwrap_or(f64::INFINITY)
+    };
+    of(ChannelParameter::ManualFeed).min(of(ChannelParameter::ManualFeedMax))
+}
+
+/// The step by hand, mm.
+fn step_mm(machine: &Machine, number: u8) -> f64 {
+    let at = machine
+        .memory
+        .of_channel(number, ChannelParameter::StepPointer)
+        .whole()
+        .unwrap_or(0);
+    let at = u32::try_from(at).unwrap_or(0).min(STEPS_MM.len() as u32 - 1);
+    let place = machine
+        .memory
+        .channel_place_at(number, ChannelParameter::StepTable, at);
+    let own = place.and_then(|place| machine.memory.at(place).number());
+    own.or(STEPS_MM.get(at as usize).copied()).unwrap_or(0.0)
+}
+
+/// P8761: the next step of the table.
+pub(crate) fn next_step(machine: &mut Machine, number: u8) {
+    let at = machine
+        .memory
+        .of_channel(number, ChannelParameter::StepPointer)
+        .whole()
+        .unwrap_or(0);
+    let next = (at + 1) % STEPS_MM.len() as i64;
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::StepPointer, next);
+    machine.memory.set_channel(number, ChannelParameter::NextStep, 0);
+    let step = step_mm(machine, number);
+    if let Some(place) = machine.memory.channel_place(number, ChannelParameter::StepWidth) {
+        machine.memory.store(place, Some(step), 3);
+    }
+}
+
+/// P12111, P12112: a position of the PLC is written, or cleared [002:7799-7815].
+pub(crate) fn position(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
+    let second = u32::from(parameter == AxisParameter::GoAbsolute);
+    let value = machine.memory.of_axis(physical, parameter).number();
+    let speed = axis_number(&machine.memory, physical, AxisParameter::RelativeSpeed, second);
+    let percent = position_percent(machine, physical, second);
+    store_reached(&mut machine.memory, physical, second, 0);
+    let axes = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter());
+    for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
+        hand.goal = value.map(|value| {
+            let wanted = if second == 0 { unit.nominal + value } else { value };
+            let (position, _) = within(unit, wanted);
+            let speed = speed
+                .filter(|speed| *speed > 0.0)
+                .unwrap_or(place.block.max_mm_min);
+            Goal {
+                position,
+                feed_mm_min: speed * percent / 100.0,
+                reports: Some(second),
+            }
+        });
+    }
+}
+
+fn position_percent(machine: &Machine, physical: u8, second: u32) -> f64 {
+    let place = machine.places.iter().find(|place| place.physical == physical);
+    let number = place.map_or(1, |place| place.channel + 1);
+    let of_channel = match second {
+        0 => ChannelParameter::RelativeOverride,
+        _ => ChannelParameter::AbsoluteOverride,
+    };
+    let own = axis_number(&machine.memory, physical, AxisParameter::RelativeOverride, second);
+    let own = own.filter(|number| *number > 0.0);
+    let common = || machine.memory.of_channel(number, of_channel).number();
+    let number = own.or_else(common).filter(|number| *number > 0.0).unwrap_or(1.0);
+    machine.memory.override_percent(number as u8)
+}
+
+/// P12130: the axis seeks its reference point, its zero pulse counts, or it has it here [002:8018-8042].
+pub(crate) fn begin_seek(machine: &mut Machine, physical: u8) {
+    let bits = machine
+        .memory
+        .of_axis(physical, AxisParameter::Reference)
+        .bits()
+        .unwrap_or(0);
+    let [plus, minus, release, set] = bits.to_le_bytes();
+    let axes = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter_mut());
+    for ((place, hand), unit) in axes.filter(|((place, _), _)| place.physical == physical) {
+        hand.seeks = match (plus, minus) {
+            (1, _) => Some(Direction::Plus),
+            (_, 1) => Some(Direction::Minus),
+            _ => None,
+        };
+        if release == 1 && !hand.released {
+            unit.servo.forget_marks();
+            unit.referenced = false;
+        }
+        hand.released = release == 1;
+        if set == 1 {
+            unit.set_datum(unit.servo.count(), place.block.reference_mm);
+            unit.referenced = true;
+        }
+    }
+}
+
+/// Moves what nothing but the operator and the PLC moves, for a cycle.
+pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
+    turn_wheels(machine, measured);
+    turn_spindles(machine);
+    for k in 0..machine.channels.len() {
+        let feed = manual_feed(machine, k as u8 + 1);
+        let is_hand = machine
+            .channels
+            .get(k)
+            .is_some_and(|channel| channel.mode == Mode::Hand);
+        let Some(now) = machine.parts(k).map(|(_, _, site)| site.now) else {
+            continue;
+        };
+        let axes = machine
+            .places
+            .iter()
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter_mut());
+        for ((place, hand), unit) in axes.filter(|(_, unit)| unit.channel == k) {
+            if !is_hand {
+                hand.key = None;
+            }
+            lead(place, hand, unit, feed, &now, &mut machine.memory);
+        }
+    }
+}
+
+/// P11400: what the handwheels were turned in this cycle [002:6297-6360].
+fn turn_wheels(machine: &mut Machine, measured: &Measured) {
+    for number in 1..=WHEELS {
+        let Some(wheel) = machine.memory.handwheel(number) else {
+            continue;
+        };
+        let count = measured.encoder(usize::from(wheel.encoder) - 1).count;
+        let axes = machine
+            .places
+            .iter()
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter());
+        for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == wheel.axis) {
+            let is_free = matches!(unit.mover, Mover::None | Mover::Manual);
+            hand.wheel = match hand.wheel {
+                _ if !wheel.active || !is_free => None,
+                Some((by, before, target)) if by == number => {
+                    let way = (count - before) as f64 * wheel.step_mm;
+                    Some((number, count, within(unit, target + way).0))
+                }
+                Some(other) => Some(other),
+                None => Some((number, count, unit.nominal)),
+            };
+        }
+    }
+}
+
+/// P11640: spindles turn as they are ordered [002:6575-6627].
+fn turn_spindles(machine: &mut Machine) {
+    for number in 1..=WHEELS {
+        let Some(spindle) = machine.memory.spindle(number) else {
+            continue;
+        };
+        let time_s = f64::from(machine.core.timing.contour_us()) * 1e-6;
+        let axes = machine
+            .places
+            .iter()
+            .zip(&mut machine.hands)
+            .zip(machine.core.axes.iter_mut());
+        for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == spindle.axis) {
+            let state = turn(&spindle, hand, unit, time_s);
+            let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
+            machine.memory.show_spindle(number, rpm, state);
+        }
+    }
+}
+
+/// A spindle for a cycle; what P11651 says.
+fn turn(spindle: &SpindleBlock, hand: &mut Hand, unit: &mut AxisUnit, time_s: f64) -> u8 {
+    let may = unit.can_be_driven() && matches!(unit.mover, Mover::None | Mover::Rotation);
+    if !may || spindle.order == 0 && !hand.turns {
+        return 0;
+    }
+    hand.turns = true;
+    unit.mover = Mover::Rotation;
+    let rpm = spindle.rpm.min(spindle.max_rpm);
+    match spindle.order {
+        0 => {
+            unit.come_to_rest(time_s);
+            hand.turns = unit.mover == Mover::Rotation;
+            0
+        }
+        order @ (1 | -1) => {
+            let wanted = order as f64 * rpm * DEG_MIN_PER_RPM;
+            unit.drive(time_s, Aim::Feed(wanted), wanted.abs());
+            let actual = unit.servo.actual_velocity_mm_min();
+            let near = match spindle.tolerance_percent {
+                Some(percent) => (actual - wanted).abs() <= wanted.abs() * percent / 100.0,
+                None => unit.speed * 60.0 == wanted,
+            };
+            u8::from(near && rpm > 0.0)
+        }
+        _ => {
+            let turns = ((unit.nominal - spindle.position_deg) / 360.0).round();
+            let target = spindle.position_deg + turns * 360.0;
+            unit.drive(time_s, Aim::Position(target), rpm.max(1.0) * DEG_MIN_PER_RPM);
+            if unit.ptp.is_at(target) && unit.servo.in_position() {
+                2
+            } else {
+                0
+            }
+        }
+    }
+}
+
+/// Leads one axis for a cycle.
+fn lead(place: &AxisPlace, hand: &mut Hand, unit: &mut AxisUnit, feed: f64, now: &Now, memory: &mut Memory) {
+    if hand.turns {
+        return;
+    }
+    if let Some(direction) = hand.seeks.filter(|_| unit.can_be_driven()) {
+        return seek(place, hand, unit, (direction, feed), now, memory);
+    }
+    if hand.released {
+        take_mark(place, hand, unit);
+    }
+    if matches!(unit.mover, Mover::Reference) {
+        return unit.come_to_rest(now.time_s);
+    }
+    match hand.goal {
+        Some(goal) if unit.can_be_driven() && matches!(unit.mover, Mover::None | Mover::Positioning) => {
+            unit.mover = Mover::Positioning;
+            unit.drive(now.time_s, Aim::Position(goal.position), goal.feed_mm_min);
+            if unit.ptp.is_at(goal.position) && unit.servo.in_position() {
+                (hand.goal, unit.mover) = (None, Mover::None);
+                if let Some(which) = goal.reports {
+                    store_reached(memory, place.physical, which, 1);
+                }
+            }
+        }
+        Some(_) => {}
+        None if unit.mover == Mover::Positioning => unit.come_to_rest(now.time_s),
+        None => {
+            let wheel = hand
+                .wheel
+                .map(|(_, _, target)| target)
+                .filter(|_| hand.key.is_none());
+            let wheel = wheel.filter(|target| *target != unit.nominal || unit.mover == Mover::Manual);
+            if hand.key.is_some() || wheel.is_some() || unit.mover == Mover::Manual {
+                let wanted = HandMove {
+                    key: hand.key,
+                    wheel,
+                    ..HandMove::default()
+                };
+                move_by_hand(unit, &wanted, &Now { stop: false, ..*now });
+            }
+        }
+    }
+}
+
+/// On towards the reference point.
+fn seek(
+    place: &AxisPlace,
+    hand: &mut Hand,
+    unit: &mut AxisUnit,
+    (direction, feed): (Direction, f64),
+    now: &Now,
+    memory: &mut Memory,
+) {
+    if !matches!(unit.mover, Mover::None | Mover::Reference) {
+        return;
+    }
+    unit.mover = Mover::Reference;
+    let feed = feed.min(place.block.max_mm_min);
+    unit.drive(now.time_s, Aim::Feed(direction.sign() * feed), feed);
+    let [minus, plus] = place.block.reference_directions;
+    let counts = if direction == Direction::Plus { plus } else { minus };
+    if hand.released && counts && take_mark(place, hand, unit) {
+        hand.seeks = None;
+        if let Some(place) = Memory::axis_place(place.physical, AxisParameter::Reference) {
+            memory.store_bits(place, 1 << 16);
+        }
+    }
+}
+
+/// The zero pulse was passed while it counts: the axis knows where it is. Whether it does.
+fn take_mark(place: &AxisPlace, hand: &Hand, unit: &mut AxisUnit) -> bool {
+    let mark = unit
+        .servo
+        .take_mark()
+        .filter(|_| hand.released && !unit.referenced);
+    if let Some(mark) = mark {
+        unit.set_datum(mark.count, place.block.reference_mm);
+        unit.referenced = true;
+    }
+    mark.is_some()
+}
+
+/// P12191, P12192: a position is reached, or not.
+fn store_reached(memory: &mut Memory, physical: u8, which: u32, reached: i32) {
+    let place = Memory::axis_place(physical, AxisParameter::Reached).and_then(|place| place.q());
+    if let Some(place) = place {
+        memory.store_bits(bahn_system900::Place::Q(place + which), reached);
+    }
+}
+
+/// The number of a parameter of an axis, or of one after it.
+fn axis_number(memory: &Memory, physical: u8, parameter: AxisParameter, after: u32) -> Option<f64> {
+    let place = Memory::axis_place(physical, parameter)?.q()?;
+    memory.system_cell(place + after).number()
+}

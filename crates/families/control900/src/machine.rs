@@ -1,0 +1,260 @@
+//! The machine side: all axes, the circuit, the channels, and what the kernel's clock asks of them.
+
+use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
+use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
+use bahn_path::Position;
+use bahn_system900::{ChannelParameter, Memory};
+
+use crate::answers::Answers;
+use crate::axis_state::{AxisPlace, Hand, Watch};
+use crate::channel::{Channel, Site};
+use crate::message::{Kind, Message, Messages};
+use crate::setup::Setup;
+use crate::transfer::Transfers;
+use crate::units;
+
+/// The circuit is not tested at power-on: the manual names no test (inferred).
+const NO_TEST: EmergencyStopTest = EmergencyStopTest {
+    times: 0,
+    recognise_us: 0,
+    fall_us: 100_000,
+    restore_us: 0,
+};
+
+/// Everything but the clock.
+#[derive(Clone)]
+pub(crate) struct Machine {
+    pub core: Core,
+    pub memory: Memory,
+    pub channels: Vec<Channel>,
+    /// What is known of the axes beside the kernel, in its order.
+    pub places: Vec<AxisPlace>,
+    pub watches: Vec<Watch>,
+    pub hands: Vec<Hand>,
+    pub messages: Messages,
+    pub transfers: Transfers,
+    pub answers: Answers,
+    pub now_us: u64,
+    pub plc_us: u64,
+    /// When the PLC is due.
+    pub scan_us: u64,
+    /// Positions at power-on were taken.
+    pub begun: bool,
+}
+
+impl Machine {
+    pub fn new(mut memory: Memory, setup: Setup) -> Machine {
+        memory.start();
+        let timing = units::timing(&memory);
+        let (list, places) = units::build(&memory, timing);
+        let mut axes = Axes::new(list, timing);
+        let channels = (1..=memory.channels()).map(|number| {
+            let limits = units::limits(&axes.of(usize::from(number) - 1), &places, timing);
+            Channel::new(number, &limits, timing, &memory)
+        });
+        let channels: Vec<Channel> = channels.collect();
+        let mut machine = Machine {
+            watches: vec![Watch::default(); places.len()],
+            hands: vec![Hand::default(); places.len()],
+            core: Core {
+                timing,
+                axes,
+                emergency: EmergencyStop::new(NO_TEST, false),
+                loops_closed: false,
+            },
+            memory,
+            channels,
+            places,
+            messages: Messages::default(),
+            transfers: Transfers::default(),
+            answers: Answers::new(setup.answers),
+            now_us: 0,
+            plc_us: u64::from(setup.plc_us.max(1)),
+            scan_us: 0,
+            begun: false,
+        };
+        machine.messages.reserve();
+        machine.transfers.reserve();
+        machine
+    }
+
+    /// What holds for a channel in this cycle.
+    fn now(&self, k: usize) -> Option<Now> {
+        let channel = self.channels.get(k)?;
+        Some(Now {
+            time_s: f64::from(self.core.timing.contour_us()) * 1e-6,
+            us: self.now_us,
+            start: channel.wanted.start,
+            stop: channel.wanted.stop,
+            fault: false,
+            stop_pressed: channel.wanted.stop,
+            ready: self.core.emergency.circuit() == Circuit::Ready,
+            loops_closed: self.core.loops_closed,
+            feed_percent: 100.0,
+            program_percent: channel.override_percent,
+            program_rapid: false,
+            axis_keys: PerPlcAxis::splat(None),
+            wheel_mm: PerPlcAxis::splat(0.0),
+            rapid_limit_mm_min: f64::INFINITY,
+        })
+    }
+
+    /// The run of a channel, what it reads, and where it acts.
+    pub fn parts(&mut self, k: usize) -> Option<(&mut Run, Option<&mut Feeder>, Site<'_>)> {
+        let now = self.now(k)?;
+        let channel = self.channels.get_mut(k)?;
+        let site = Site {
+            number: channel.number,
+            axes: self.core.axes.of(k),
+            chain: &mut channel.chain,
+            spindle: &mut channel.spindle,
+            m: &channel.m,
+            waits_for_m: &mut channel.waits_for_m,
+            branch: &mut channel.branch,
+            transfers: &mut self.transfers,
+            memory: &mut self.memory,
+            at: None,
+            now,
+        };
+        Some((&mut channel.run, channel.feeder.as_mut(), site))
+    }
+
+    /// Reads ahead for a channel, outside the cycle; begins a run that is to begin.
+    pub fn prepare(&mut self, k: usize) {
+        let start_block = self
+            .memory
+            .of_channel(k as u8 + 1, ChannelParameter::StartBlock)
+            .whole();
+        let now_us = self.now_us;
+        let Some((run, _, mut site)) = self.parts(k) else {
+            return;
+        };
+        run.track.reserve();
+        if run.takes_begin(|| site.axes.rest()) {
+            run.begin();
+            run.set_off(&site.acting());
+            self.begin(k, start_block.unwrap_or(0));
+        }
+        let Some((run, Some(feeder), mut site)) = self.parts(k) else {
+            return;
+        };
+        if run.progress().is_on_its_way() {
+            let allowed = run.allowed(now_us);
+            run.prepare(feeder, allowed, Position::ZERO, &site.acting(), |_, _| {});
+        }
+    }
+
+    /// The program of a channel is read from a block on, 0 for its first.
+    fn begin(&mut self, k: usize, block: i64) {
+        let within = {
+            let axes = self.core.axes.of(k);
+            (axes.traverse_box(), axes.programmable())
+        };
+        let Some((_, _, mut site)) = self.parts(k) else {
+            return;
+        };
+        let here = site.acting().here();
+        let Some(channel) = self.channels.get_mut(k) else {
+            return;
+        };
+        (channel.branch, channel.jump, channel.waits_for_m) = (None, None, false);
+        let Some(program) = &channel.program else {
+            return;
+        };
+        let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
+        feeder.reader_mut().relocate(&here);
+        if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
+            feeder.reader_mut().goto(block);
+        }
+        channel.feeder = Some(feeder);
+    }
+
+    /// A message comes, and does what its kind says.
+    pub fn raise(&mut self, number: u32, channel: u8, axis: Option<u8>, kind: Kind) {
+        self.say(
+            number,
+            channel,
+            axis,
+            kind,
+            crate::message::text_of(number).into(),
+        );
+    }
+
+    /// The same with a text of its own.
+    pub fn say(
+        &mut self,
+        number: u32,
+        channel: u8,
+        axis: Option<u8>,
+        kind: Kind,
+        text: std::borrow::Cow<'static, str>,
+    ) {
+        let message = Message {
+            time_us: self.now_us,
+            number,
+            channel,
+            axis,
+            kind,
+            text,
+            acknowledged_us: None,
+        };
+        if !self.messages.raise(message) {
+            return;
+        }
+        for other in &mut self.channels {
+            let is_own = other.number == channel;
+            match kind {
+                Kind::System => other.wanted.abort = true,
+                Kind::High => other.wanted.abort |= is_own,
+                Kind::Low => other.wanted.stop |= is_own,
+                Kind::Display => {}
+            }
+        }
+    }
+
+    /// The run of a channel is broken off where it is.
+    pub fn break_off(&mut self, k: usize) {
+        let Some(channel) = self.channels.get(k) else {
+            return;
+        };
+        if channel.run.progress().is_active() {
+            let (number, block) = (channel.number, i64::from(channel.block().block));
+            let program = self
+                .memory
+                .of_channel(number, ChannelParameter::Program)
+                .whole()
+                .unwrap_or(0);
+            for (parameter, value) in [
+                (ChannelParameter::AbortProgram, program),
+                (ChannelParameter::AbortBlock, block),
+                (ChannelParameter::BrokenProgram, program),
+                (ChannelParameter::BrokenBlock, block),
+            ] {
+                self.memory.set_channel(number, parameter, value);
+            }
+        }
+        self.leave(k);
+    }
+
+    /// Nothing of a run is left; its axes come down on their ramps.
+    pub fn leave(&mut self, k: usize) {
+        let Some((run, _, mut site)) = self.parts(k) else {
+            return;
+        };
+        run.stop();
+        run.break_off(&mut site.acting());
+        run.track.path.clear();
+        *site.waits_for_m = false;
+        *site.branch = None;
+        let number = site.number;
+        site.memory.set_channel(number, ChannelParameter::WaitsForM, 0);
+        if let Some(channel) = self.channels.get_mut(k) {
+            channel.jump = None;
+        }
+    }
+
+    /// All axes of a channel are referenced.
+    pub(crate) fn is_referenced(&self, k: usize) -> bool {
+        self.core.axes.owned(k).all(|unit| unit.referenced)
+    }
+}

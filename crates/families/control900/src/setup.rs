@@ -1,0 +1,54 @@
+//! What a control is told beside its parameters.
+
+/// What answers in the place of a PLC, one PLC cycle after its cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StandardAnswers {
+    /// P8700 and P8701 are 1; P8709 is when all axes of the channel are referenced.
+    pub enable: bool,
+    /// The mode that is asked for is given: P8683 to P8703.
+    pub mode: bool,
+    /// A start or stop that is asked for is given: P8684 to P8704.
+    pub start: bool,
+    /// M functions with stop are acknowledged: P8706. Not branches.
+    pub m: bool,
+    /// After M6 the tool is changed: P8047 and P8045.
+    pub tools: bool,
+}
+
+impl StandardAnswers {
+    /// All of them.
+    pub const ALL: StandardAnswers = StandardAnswers {
+        enable: true,
+        mode: true,
+        start: true,
+        m: true,
+        tools: true,
+    };
+    /// None: somebody else is the PLC.
+    pub const NONE: StandardAnswers = StandardAnswers {
+        enable: false,
+        mode: false,
+        start: false,
+        m: false,
+        tools: false,
+    };
+}
+
+/// What a control is told beside its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setup {
+    /// What answers in the place of a PLC.
+    pub answers: StandardAnswers,
+    /// The cycle of the PLC, µs.
+    pub plc_us: u32,
+}
+
+impl Default for Setup {
+    /// All standard answers, in a cycle of 10 ms (inferred).
+    fn default() -> Setup {
+        Setup {
+            answers: StandardAnswers::ALL,
+            plc_us: 10_000,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The fixed parameters of a channel by which it runs: commands, answers, states [002:3606-5270].
+
+use crate::numbered::parameters;
+
+parameters! {
+/// A fixed parameter of a channel.
+ChannelParameter {
+    /// P7000: positions by logical axes, at the measuring signal [002:1543-1547].
+    MeasuredPositions = 7000,
+    /// P7032: display positions.
+    DisplayPositions = 7032,
+    /// P7064: programmed positions.
+    ProgrammedPositions = 7064,
+    /// P7096: programmed less display positions.
+    DeltaPositions = 7096,
+    /// P7128: display shifts.
+    DisplayShifts = 7128,
+    /// P8500: message of the system, ends all channels.
+    SystemMessage = 8500,
+    /// P8501: message of high priority, ends the channel.
+    HighMessage = 8501,
+    /// P8502: message of low priority, stops the channel.
+    LowMessage = 8502,
+    /// P8503: message that is only shown.
+    DisplayMessage = 8503,
+    /// P8504: the axis that a message is about.
+    MessageAxis = 8504,
+    /// P8508: acknowledges the messages of the control [002:939-948].
+    Acknowledge = 8508,
+    /// P8550: number of the channel.
+    ChannelNumber = 8550,
+    /// P8551: number of its axes.
+    AxisCount = 8551,
+    /// P8552: its highest logical axis.
+    LastAxis = 8552,
+    /// P8559: the block waits for an M function with stop.
+    WaitsForM = 8559,
+    /// P8579: all reference points are taken.
+    AllReferenced = 8579,
+    /// P8681: the key MANUAL.
+    ManualKey = 8681,
+    /// P8682: the keys START and STOP [002:3613-3619].
+    StartKey = 8682,
+    /// P8683: the mode that is asked for [002:3621-3629].
+    ModeRequest = 8683,
+    /// P8684: start that is asked for [002:3636-3667].
+    StartRequest = 8684,
+    /// P8685: state of the program [002:3669-3680].
+    ProgramState = 8685,
+    /// P8690: an M function by hand.
+    ManualM = 8690,
+    /// P8695: block whose way was ended by M26.
+    ResidualBlock = 8695,
+    /// P8700: the loops are enabled [002:3752-3756].
+    LoopsEnabled = 8700,
+    /// P8701: the axes are enabled [002:3758-3762].
+    AxesEnabled = 8701,
+    /// P8702: the axes stop on their ramps [002:3764-3767].
+    SafetyStop = 8702,
+    /// P8703: the mode [002:3773-3787].
+    Mode = 8703,
+    /// P8704: start as the PLC gives it [002:3789-3797].
+    Start = 8704,
+    /// P8705: the program is broken off [002:3799-3803].
+    Abort = 8705,
+    /// P8706: the block is released [002:3801-3808].
+    BlockRelease = 8706,
+    /// P8709: the PLC says that all reference points are taken [002:3810-3816].
+    Referenced = 8709,
+    /// P8750: how axes are moved by hand [002:3983-3993].
+    ManualMode = 8750,
+    /// P8751: the logical axis that is moved by hand.
+    ManualAxis = 8751,
+    /// P8752: plus and minus by hand [002:3997-4009].
+    ManualMove = 8752,
+    /// P8754: greatest feed by hand.
+    ManualFeedMax = 8754,
+    /// P8755: feed by hand.
+    ManualFeed = 8755,
+    /// P8756: feed by hand as it acts.
+    ManualFeedActual = 8756,
+    /// P8760: the step as it acts.
+    StepWidth = 8760,
+    /// P8761: the next step.
+    NextStep = 8761,
+    /// P8762: which step of the table.
+    StepPointer = 8762,
+    /// P8763: the first of seven steps.
+    StepTable = 8763,
+    /// P8800: the program.
+    Program = 8800,
+    /// P8801: the block with which it starts.
+    StartBlock = 8801,
+    /// P8802: the program that was broken off.
+    AbortProgram = 8802,
+    /// P8803: the block that was broken off.
+    AbortBlock = 8803,
+    /// P8814: where single blocks stop.
+    SingleRule = 8814,
+    /// P8815: feed of a test.
+    TestFeed = 8815,
+    /// P8816: rapid traverse.
+    RapidFeed = 8816,
+    /// P8818: programmed feeds, %.
+    FeedPercent = 8818,
+    /// P8865: the override of the path.
+    PathOverride = 8865,
+    /// P8866: the override of relative positions.
+    RelativeOverride = 8866,
+    /// P8867: the override of absolute positions.
+    AbsoluteOverride = 8867,
+    /// P8891: axes whose moves hold the execution.
+    AxisLock = 8891,
+    /// P8900: the program that is executed.
+    ActualProgram = 8900,
+    /// P8901: the block that is executed.
+    ActualBlock = 8901,
+    /// P8906: the program that was broken off; 0 at M30.
+    BrokenProgram = 8906,
+    /// P8907: the block that was broken off; 0 at M30.
+    BrokenBlock = 8907,
+    /// P8910: the program with a fault.
+    FaultProgram = 8910,
+    /// P8911: the block with a fault.
+    FaultBlock = 8911,
+    /// P8936: the programmed feed.
+    ProgrammedFeed = 8936,
+    /// P8938: the feed.
+    ActualFeed = 8938,
+    /// P8940: rapid, line, circle.
+    Interpolation = 8940,
+}
+}

@@ -1,0 +1,309 @@
+//! Parameters that all channels share, and those of the system by which a control runs [002:6147-6627] [002:1272-1350].
+
+use crate::array::Cell;
+use crate::memory::{Memory, Place};
+use crate::numbered::parameters;
+use crate::numbers::{COUPLING_BLOCK, COUPLINGS_MAX, SHARED};
+
+parameters! {
+/// A parameter that all channels share.
+SharedParameter {
+    /// P11301: the interpolation cycle, ms.
+    CycleTime = 11301,
+    /// P11310: override 1, %: five parameters each.
+    Override = 11310,
+    /// P11370: how many values the override table has; they follow.
+    OverrideTable = 11370,
+    /// P11400: handwheel 1, ten parameters each.
+    Handwheel = 11400,
+    /// P11480: coupling 1, twenty parameters each.
+    Coupling = 11480,
+    /// P11640: spindle 1, twenty parameters each.
+    Spindle = 11640,
+}
+}
+
+/// Networks of channels [002:1272-1350].
+const NETWORKS: u32 = 4;
+/// The first network: its modes, its stop, its abort.
+const NETWORK: [u32; 3] = [903, 904, 905];
+/// Parameters of each.
+const NETWORK_BLOCK: u32 = 10;
+/// Acknowledgement of messages, in the descriptor [002:939-948].
+const ACKNOWLEDGEMENT: u32 = 57;
+/// Decimals of positions, in the descriptor [002:954-965].
+const POSITION_DECIMALS: u32 = 59;
+/// Overrides, of which the first four follow a potentiometer [002:6200-6290].
+const OVERRIDE_BLOCK: u32 = 5;
+const OVERRIDES: u8 = 8;
+const FREE_OVERRIDES: u8 = 4;
+/// What the other four give, %.
+const FIXED_OVERRIDES: [f64; 4] = [0.0, 10.0, 50.0, 100.0];
+/// The preset table, %.
+const PRESET: [f64; 27] = [
+    0.0, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0, 65.0, 70.0, 75.0,
+    80.0, 85.0, 90.0, 95.0, 100.0, 105.0, 110.0, 115.0, 120.0,
+];
+/// Steps of a potentiometer.
+const RAW_MAX: f64 = 255.0;
+/// Ratio, and what couples or is coupled, in the block of a coupling.
+const HANDWHEEL_BLOCK: u32 = 10;
+/// Handwheels [002:6297-6360].
+const HANDWHEELS: u32 = 8;
+
+/// What channels of a network do together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Together {
+    /// They change their mode.
+    Mode,
+    /// They stop.
+    Stop,
+    /// They are broken off.
+    Abort,
+}
+
+/// A coupling of two physical axes as it is written [002:6520-6573].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CouplingBlock {
+    /// Which, from 1 on.
+    pub number: u8,
+    /// The physical axis that leads.
+    pub master: u8,
+    /// The physical axis that follows.
+    pub slave: u8,
+    /// The error that is allowed, mm or degrees; `None` without monitoring.
+    pub error_mm: Option<f64>,
+    /// So long it may last, s.
+    pub time_s: f64,
+    /// Where both stand when they are synchronous, mm or degrees.
+    pub synchronous_mm: [f64; 2],
+    /// The slave goes so much farther than the master.
+    pub ratio: f64,
+    /// What is ordered: off 0, on 1, synchronous 2.
+    pub order: i64,
+}
+
+/// A handwheel as it is written [002:6297-6360].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandwheelBlock {
+    /// The physical axis whose encoder it is.
+    pub encoder: u8,
+    /// The physical axis that it moves.
+    pub axis: u8,
+    /// It acts.
+    pub active: bool,
+    /// Way of an increment with its multiplier, mm or degrees.
+    pub step_mm: f64,
+}
+
+/// A spindle as it is written [002:6575-6627].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleBlock {
+    /// Which, from 1 on.
+    pub number: u8,
+    /// The physical axis that turns.
+    pub axis: u8,
+    /// Speed of G97 at most, rpm.
+    pub max_rpm: f64,
+    /// The programmed speed, rpm.
+    pub rpm: f64,
+    /// What is ordered: off 0, positive 1, negative -1, to its position ±2.
+    pub order: i64,
+    /// Where it is positioned, degrees.
+    pub position_deg: f64,
+    /// The speed counts as reached when it is so near, %; `None` without monitoring.
+    pub tolerance_percent: Option<f64>,
+}
+
+/// The override whose potentiometer a system parameter is.
+pub(crate) fn override_at(number: u32) -> Option<u8> {
+    let first = SharedParameter::Override.number() - SHARED.0 + SHARED.1 + 1;
+    let at = number.checked_sub(first)?;
+    let index = at / OVERRIDE_BLOCK;
+    let number = u8::try_from(index + 1).ok()?;
+    (at % OVERRIDE_BLOCK == 0 && number <= FREE_OVERRIDES).then_some(number)
+}
+
+impl Memory {
+    /// What a system parameter holds.
+    pub fn system_cell(&self, number: u32) -> Cell {
+        self.at(Place::Q(number))
+    }
+
+    fn shared_cell(&self, of: SharedParameter, offset: u32) -> Cell {
+        self.system_cell(of.number() - SHARED.0 + SHARED.1 + offset)
+    }
+
+    fn shared_number(&self, of: SharedParameter, offset: u32) -> f64 {
+        self.shared_cell(of, offset).number().unwrap_or(0.0)
+    }
+
+    fn shared_axis(&self, of: SharedParameter, offset: u32) -> Option<u8> {
+        let number = self.shared_cell(of, offset).whole()?;
+        u8::try_from(number).ok().filter(|axis| *axis > 0)
+    }
+
+    /// The interpolation cycle that is wanted, ms; `None` when nobody says.
+    pub fn cycle_ms(&self) -> Option<f64> {
+        self.shared_cell(SharedParameter::CycleTime, 0)
+            .number()
+            .filter(|ms| *ms > 0.0)
+    }
+
+    /// The channels that do something together with one of them; itself alone without a network. Channels count from 1, bit 0
+    /// is the first.
+    pub fn together(&self, channel: u8, what: Together) -> u8 {
+        let [mode, stop, abort] = NETWORK;
+        let entry = match what {
+            Together::Mode => mode,
+            Together::Stop => stop,
+            Together::Abort => abort,
+        };
+        let own = 1u8.checked_shl(u32::from(channel.saturating_sub(1))).unwrap_or(0);
+        (0..NETWORKS).fold(own, |all, network| {
+            let bits = self
+                .system_cell(entry + NETWORK_BLOCK * network)
+                .bits()
+                .unwrap_or(0);
+            let [channels, ..] = bits.to_le_bytes();
+            match channels & own != 0 {
+                true => all | channels,
+                false => all,
+            }
+        })
+    }
+
+    /// Messages of a channel go by P8508 alone, not with the change to HAND [002:939-948].
+    pub fn acknowledges_apart(&self, channel: u8) -> bool {
+        self.descriptor(channel).entry(ACKNOWLEDGEMENT).whole() == Some(1)
+    }
+
+    /// Decimals of positions that the control writes [002:954-965].
+    pub fn position_decimals(&self, channel: u8) -> u8 {
+        let said = self.descriptor(channel).entry(POSITION_DECIMALS).whole();
+        said.and_then(|decimals| u8::try_from(decimals).ok())
+            .filter(|decimals| (1..=9).contains(decimals))
+            .unwrap_or(3)
+    }
+
+    /// An override, %, 1 to 8: as its potentiometer stands, through the table, within its limits [002:6200-6290]. One that was
+    /// never written is 100 %, and so is one that is none (inferred).
+    pub fn override_percent(&self, number: u8) -> f64 {
+        let at = u32::from(number.saturating_sub(1)) * OVERRIDE_BLOCK;
+        if !(1..=OVERRIDES).contains(&number) {
+            return 100.0;
+        }
+        if number > FREE_OVERRIDES {
+            let fixed = FIXED_OVERRIDES.get(usize::from(number - FREE_OVERRIDES - 1));
+            return fixed.copied().unwrap_or(100.0);
+        }
+        let of = |offset: u32| self.shared_cell(SharedParameter::Override, at + offset).number();
+        let Some(raw) = of(1) else { return 100.0 };
+        let raw = raw.clamp(0.0, RAW_MAX);
+        let percent = match of(4).filter(|pointer| *pointer != 0.0) {
+            Some(_) => self.tabled(raw),
+            None => raw * of(3).unwrap_or(100.0) / RAW_MAX,
+        };
+        percent
+            .max(of(2).unwrap_or(0.0))
+            .min(of(3).unwrap_or(f64::INFINITY))
+    }
+
+    fn tabled(&self, raw: f64) -> f64 {
+        let length = self.shared_cell(SharedParameter::OverrideTable, 0).whole();
+        let preset = PRESET.len();
+        let count = length
+            .and_then(|length| usize::try_from(length).ok())
+            .filter(|count| *count > 0);
+        let index = (raw * count.unwrap_or(preset) as f64 / (RAW_MAX + 1.0)).floor() as u32;
+        let own = self
+            .shared_cell(SharedParameter::OverrideTable, 1 + index)
+            .number();
+        match count.and(own) {
+            Some(percent) => percent,
+            None => PRESET.get(index as usize).copied().unwrap_or(100.0),
+        }
+    }
+
+    /// Stores what an override is now.
+    pub fn show_override(&mut self, number: u8) {
+        if (1..=OVERRIDES).contains(&number) {
+            let percent = self.override_percent(number);
+            let at = u32::from(number - 1) * OVERRIDE_BLOCK;
+            let number = SharedParameter::Override.number() - SHARED.0 + SHARED.1 + at;
+            self.store(Place::Q(number), Some(percent), 0);
+        }
+    }
+
+    /// A coupling, 1 to 8, that names two axes.
+    pub fn coupling(&self, number: u8) -> Option<CouplingBlock> {
+        let number = number.min(COUPLINGS_MAX as u8);
+        let at = u32::from(number.checked_sub(1)?) * COUPLING_BLOCK;
+        let of = |offset: u32| self.shared_number(SharedParameter::Coupling, at + offset);
+        let teeth = |offset: u32| Some(of(offset)).filter(|teeth| *teeth != 0.0).unwrap_or(1.0);
+        Some(CouplingBlock {
+            number,
+            master: self.shared_axis(SharedParameter::Coupling, at)?,
+            slave: self.shared_axis(SharedParameter::Coupling, at + 1)?,
+            error_mm: Some(of(4)).filter(|error| *error > 0.0),
+            time_s: of(5) * 1e-3,
+            synchronous_mm: [of(10), of(11)],
+            ratio: teeth(12) / teeth(13),
+            order: self
+                .shared_cell(SharedParameter::Coupling, at + 15)
+                .whole()
+                .unwrap_or(0),
+        })
+    }
+
+    /// Stores how far a coupling is: off 0, on 1, synchronous 2.
+    pub fn show_coupling(&mut self, number: u8, state: u8) {
+        let at = u32::from(number.saturating_sub(1)) * COUPLING_BLOCK + 16;
+        let place = SharedParameter::Coupling.number() - SHARED.0 + SHARED.1 + at;
+        self.store(Place::Q(place), Some(state.into()), 0);
+    }
+
+    /// A handwheel, 1 to 8, that names an encoder and an axis.
+    pub fn handwheel(&self, number: u8) -> Option<HandwheelBlock> {
+        let number = u32::from(number)
+            .checked_sub(1)
+            .filter(|number| *number < HANDWHEELS)?;
+        let at = number * HANDWHEEL_BLOCK;
+        let of = |offset: u32| self.shared_number(SharedParameter::Handwheel, at + offset);
+        let resolution = Some(of(3)).filter(|resolution| *resolution != 0.0)?;
+        let multiplier = Some(of(4)).filter(|multiplier| *multiplier != 0.0).unwrap_or(1.0);
+        Some(HandwheelBlock {
+            encoder: self.shared_axis(SharedParameter::Handwheel, at)?,
+            axis: self.shared_axis(SharedParameter::Handwheel, at + 1)?,
+            active: of(2) == 1.0,
+            step_mm: multiplier / resolution,
+        })
+    }
+
+    /// A spindle, 1 to 8, that names an axis.
+    pub fn spindle(&self, number: u8) -> Option<SpindleBlock> {
+        let number = number.min(COUPLINGS_MAX as u8);
+        let at = u32::from(number.checked_sub(1)?) * COUPLING_BLOCK;
+        let of = |offset: u32| self.shared_number(SharedParameter::Spindle, at + offset);
+        Some(SpindleBlock {
+            number,
+            axis: self.shared_axis(SharedParameter::Spindle, at)?,
+            max_rpm: Some(of(5)).filter(|rpm| *rpm > 0.0).unwrap_or(f64::INFINITY),
+            rpm: of(8),
+            order: self
+                .shared_cell(SharedParameter::Spindle, at + 10)
+                .whole()
+                .unwrap_or(0),
+            position_deg: of(12),
+            tolerance_percent: Some(of(13)).filter(|percent| *percent > 0.0),
+        })
+    }
+
+    /// Stores the speed of a spindle, rpm, and whether it is reached: no 0, yes 1, at its position 2.
+    pub fn show_spindle(&mut self, number: u8, rpm: f64, reached: u8) {
+        let at = u32::from(number.saturating_sub(1)) * COUPLING_BLOCK;
+        let first = SharedParameter::Spindle.number() - SHARED.0 + SHARED.1 + at;
+        self.store(Place::Q(first + 9), Some(rpm), 3);
+        self.store(Place::Q(first + 11), Some(reached.into()), 0);
+    }
+}
