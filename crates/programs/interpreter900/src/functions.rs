@@ -8,13 +8,13 @@
 
 use bahn_din::system900::{Block, MFunction, WordKind};
 use bahn_path::{At, Barrier, Curve, FeedRate, Function, Synchronisation, TechnologyFunction};
-use bahn_system900::{Acts, MFunction as Definition, PathParameter};
+use bahn_system900::{Acts, MFunction as Definition};
 
 use crate::block::{Next, Work};
 use crate::motion::Move;
 use crate::orders::Order;
 use crate::refusal::Refusal;
-use crate::run::{Item, Loop, Said, Then};
+use crate::run::{Loop, Said, Then};
 
 /// M functions that the control itself executes [002:1638] [002:1795] [002:3884] [002:4857] [002:4892].
 const OF_CONTROL: [u16; 9] = [0, 1, 2, 6, 16, 22, 24, 26, 30];
@@ -220,15 +220,5 @@ impl Work<'_> {
             self.run.loops.remove(place);
         }
         left > 0
-    }
-
-    /// Nothing is on its way that has not been handed out.
-    pub fn is_nothing_queued(&self) -> bool {
-        !self.run.queue.iter().any(|item| matches!(item, Item::Element(_)))
-    }
-
-    /// The PLC lets M22 jump [002:3884-3887].
-    pub fn skips(&self) -> bool {
-        self.path(PathParameter::SkipCondition) == 1.0
     }
 }

@@ -92,12 +92,3 @@ fn a_cleared_parameter_gives_no_value() {
         "P500 is cleared: it gives no value"
     );
 }
-
-#[test]
-fn a_locked_parameter_is_refused() {
-    // Status bit 3.0: lock 1; nothing has set it here, so the write passes.
-    assert_eq!(
-        ends("P500: 1 $00010001\n", "N10 P500:2 G1 X:P500 F100\nN20 M30\n"),
-        [[2.0, 0.0, 0.0]]
-    );
-}
