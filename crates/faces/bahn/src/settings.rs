@@ -9,7 +9,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use bahn_host::tool_table;
+use bahn_host::{Machine900, tool_table};
 use bahn_interpreter::{AbsentAxes, MachineTexts, Q_VALUE_MAX, Rules};
 use bahn_motion::AuxiliaryTimes;
 use bahn_parameters::own_functions::OwnFunctions;
@@ -37,6 +37,8 @@ pub(crate) struct Equipment {
     pub others: Option<Vec<ParameterList>>,
     /// Where the workpiece lies unless the options say it.
     pub datum: Position,
+    /// The machine has a System 900: of all the others nothing counts.
+    pub system900: Option<Machine900>,
 }
 
 impl Equipment {
@@ -52,6 +54,7 @@ impl Equipment {
                 datum_table: Err(bahn_interpreter::NO_DATUM_TABLE.to_owned()),
                 others: None,
                 datum: Position::UNKNOWN,
+                system900: None,
             },
         };
         let mut named = Vec::new();
@@ -70,6 +73,45 @@ impl Equipment {
             equipment.tools = Some(tool_table::load(path, model)?);
         }
         Ok(equipment)
+    }
+
+    /// The same, or the machine with a System 900 that a folder describes.
+    pub fn of_any_family(model: ControlModel, options: &MachineOptions) -> Result<Equipment, UsageError> {
+        let folder = options
+            .folder
+            .as_ref()
+            .filter(|folder| Machine900::is_meant(folder));
+        let Some(folder) = folder else {
+            return Equipment::of(model, options);
+        };
+        let of_a_tnc = [
+            ("--parameters", options.parameters.is_some()),
+            ("--mp", !options.mp.is_empty()),
+            ("--tools", options.tools.is_some()),
+            ("--block-time", options.block_time),
+        ];
+        if let Some((option, _)) = of_a_tnc.into_iter().find(|(_, given)| *given) {
+            return Err(UsageError::new(format!(
+                "{option} is for a TNC, and {} has a System 900",
+                folder.display()
+            )));
+        }
+        let loaded = Machine900::load(folder)?.map_err(|faults| {
+            let first = faults.first().map(|fault| fault.message.clone());
+            UsageError::new(format!(
+                "--machine {}: {}; `bahn machine check` shows all",
+                folder.display(),
+                first.unwrap_or_default()
+            ))
+        })?;
+        let none = MachineOptions {
+            folder: None,
+            ..options.clone()
+        };
+        Ok(Equipment {
+            system900: Some(loaded),
+            ..Equipment::of(model, &none)?
+        })
     }
 
     /// That of a machine.
@@ -99,6 +141,7 @@ impl Equipment {
             ),
             list: machine.parameters,
             tools: machine.tools,
+            system900: None,
         })
     }
 }

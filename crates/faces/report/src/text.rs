@@ -14,28 +14,23 @@ const SHOWN: usize = 20;
 pub const LABEL: usize = 18;
 
 /// The report with its lines.
-pub fn render(report: &Report, model: ControlModel, written: &[String]) -> String {
+pub fn render(report: &Report, control: &str, written: &[String]) -> String {
     let mut text = String::new();
     let mut row = |label: &str, value: &str| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{label:<LABEL$}{}", printable(value));
     };
-    head(&mut row, report, model);
+    head(&mut row, report, control);
     body(&mut row, report);
     list(&mut row, "Written", written, Clone::clone);
     text
 }
 
 /// Program, result, time, path.
-pub fn head(row: &mut impl FnMut(&str, &str), report: &Report, model: ControlModel) {
+pub fn head(row: &mut impl FnMut(&str, &str), report: &Report, control: &str) {
     row(
         "Program",
-        &format!(
-            "{} ({}), {}",
-            report.program,
-            report.unit,
-            model.to_string().to_uppercase()
-        ),
+        &format!("{} ({}), {control}", report.program, report.unit),
     );
     row("Result", &result(report));
     row(

@@ -108,9 +108,9 @@ pub use expectation::{Expectation, Presence, Relation, Run, Tested, run_name};
 pub use feed::{Next, Reader};
 pub use host::Host;
 pub use log::{Log, LogFile, Sink, is_whole};
-pub use machine900::Machine900;
 pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};
+pub use machine900::Machine900;
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]

@@ -92,10 +92,16 @@ impl Folder900 {
             root.text(key).unwrap_or_default().to_owned()
         };
         let optional = |key, usual: &str| root.text(key).unwrap_or(usual).to_owned();
-        if root.text("control").is_some_and(|control| control != Folder900::CONTROL) {
+        if root
+            .text("control")
+            .is_some_and(|control| control != Folder900::CONTROL)
+        {
             root.fault_at(
                 "control",
-                format!("the only control here is \"{}\"; a TNC is named by `model`", Folder900::CONTROL),
+                format!(
+                    "the only control here is \"{}\"; a TNC is named by `model`",
+                    Folder900::CONTROL
+                ),
             );
         }
         let folder = Folder900 {

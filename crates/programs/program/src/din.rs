@@ -22,7 +22,7 @@ impl DinLanguage {
                 "a program of DIN 66025 runs by itself from the program memory: it is neither called nor executed while \
                  it is transferred"
             }
-            DinLanguage::System900 => "a program of the System 900 is read here and not executed yet",
+            DinLanguage::System900 => "a program of the System 900 runs on a machine with that control alone",
         }
     }
 
@@ -33,7 +33,7 @@ impl DinLanguage {
                 "Run the program by itself, or write what it does in the language of the control."
             }
             DinLanguage::System900 => {
-                "`bahn check` tells what is wrong in its text. Write what is to be run in a language of the control."
+                "Name the folder of such a machine: `bahn test P1000.900 --machine DIR`."
             }
         }
     }

@@ -1,7 +1,7 @@
 //! From options to what programs run on.
 
 use bahn_report::solid;
-use bahn_report::test_run::{Bench, limits};
+use bahn_report::test_run::{Bench, System900, limits};
 use bahn_workpiece::{Columns, Memory};
 
 use super::options::TestOptions;
@@ -38,6 +38,7 @@ pub(crate) fn bench(
             None => None,
         },
         block_time: machine.block_time,
+        system900: equipment.system900.as_ref().map(System900::of),
         list: equipment.list,
     })
 }

@@ -35,7 +35,7 @@ type Shelf = fn(&TestOptions, Equipment) -> Result<Outcome, UsageError>;
 /// Runs a program and reports, or leaves several programs to `shelf`.
 pub(crate) fn command(mut options: TestOptions, shelf: Shelf) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
-    let equipment = Equipment::of(options.model, &options.machine)?;
+    let equipment = Equipment::of_any_family(options.model, &options.machine)?;
     options.model = equipment.list.model();
     settings::say_without_effect(&equipment.list, &options.machine.mp);
     match options.single() {
@@ -93,10 +93,15 @@ fn say(
         stop,
     );
     if let (Some(path), Some(recording)) = (&options.html, tested.recording.take()) {
-        write_page(path, recording, tested, options.model)?;
+        write_page(path, recording, tested, &bench.control())?;
     }
     let report = &tested.report;
-    print_report(report, options, matches!(drawn, Ok(Written::All)))?;
+    print_report(
+        report,
+        &bench.control(),
+        options,
+        matches!(drawn, Ok(Written::All)),
+    )?;
     Ok(match drawn? {
         Written::All => outcome(&tested.end),
         Written::Interrupted => Outcome::Interrupted,
@@ -132,12 +137,17 @@ pub(crate) fn print_error(error: &ErrorReport, run: &dyn Reader, main: &Path) {
     diagnostics::print_fault(&error.diagnostic(program, &path));
 }
 
-fn print_report(report: &Report, options: &TestOptions, drawn: bool) -> Result<(), UsageError> {
+fn print_report(
+    report: &Report,
+    control: &str,
+    options: &TestOptions,
+    drawn: bool,
+) -> Result<(), UsageError> {
     match options.format {
         Format::Text => {
             let mut written = options.output.names(drawn);
             written.extend(options.html.iter().map(|path| path.display().to_string()));
-            console::print(&text::render(report, options.model, &written))
+            console::print(&text::render(report, control, &written))
         }
         Format::Json => console::print_json(report),
     }

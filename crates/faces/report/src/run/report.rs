@@ -188,7 +188,7 @@ impl RunReport {
             &format!("{}, {}", self.machine, model.to_string().to_uppercase()),
         );
         match &self.program {
-            ProgramReport::Ran(report) => text::head(&mut row, report, model),
+            ProgramReport::Ran(report) => text::head(&mut row, report, &model.to_string().to_uppercase()),
             ProgramReport::Bare { .. } => row("Result", result),
         }
         row(

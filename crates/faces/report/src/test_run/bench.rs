@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_interpreter::{AbsentAxes, Interpreter, Settings};
+use bahn_interpreter900::Reader900;
 use bahn_motion::{AuxiliaryTimes, Limits, PlannedStep, Planner};
 use bahn_nc::NcReader;
 use bahn_parameters::{ControlModel, MessageId, ParameterList};
@@ -17,12 +18,16 @@ use bahn_workpiece::{Columns, Cutting, Memory, Part};
 use super::digitizing::digitize;
 use super::outputs::Outputs;
 use super::survey::Survey;
+use super::system900::System900;
 use crate::ReportError;
 use crate::block_time::BlockTime;
 use crate::follower::Follower;
 use crate::record::{End, ErrorReport, Notice, Place, Record, Report};
 use crate::stop::Stop;
 use bahn_host::files::{self, Loaded};
+
+/// Why a System 900 does not run a program.
+const FOREIGN: &str = "this machine has a System 900, which runs programs in its own language: NAME.900";
 
 /// What programs run on: model, machine parameters, tools.
 pub struct Bench {
@@ -48,6 +53,8 @@ pub struct Bench {
     pub solid: Option<Arc<Part>>,
     /// Simulate the block processing time of the model.
     pub block_time: bool,
+    /// The control is a System 900, which runs its own programs alone.
+    pub system900: Option<System900>,
 }
 
 /// What goes along with a run.
@@ -108,10 +115,15 @@ impl Bench {
         if let Some(follower) = &mut company.follower {
             follower.begin(program.block_count());
         }
+        let fault = fault.or_else(|| self.foreign(&program));
+        let limits = match &self.system900 {
+            Some(machine) => machine.limits(&program),
+            None => self.limits.clone(),
+        };
         let mut reader = self.reader(program);
         reader.set_interrupt(company.stop.flag());
         let mut run = TestRun {
-            planner: Planner::new(reader, &self.limits, &self.times),
+            planner: Planner::new(reader, &limits, &self.times),
             record: Record::new(self.settings.start),
             cutting: self
                 .columns
@@ -134,8 +146,25 @@ impl Bench {
 }
 
 impl Bench {
+    /// What its reports call the control.
+    pub fn control(&self) -> String {
+        match &self.system900 {
+            Some(machine) => machine.name().to_owned(),
+            None => self.list.model().to_string().to_uppercase(),
+        }
+    }
+
+    /// Why a program of another family is not run.
+    fn foreign(&self, program: &Program) -> Option<(MessageId, &'static str)> {
+        let is_foreign = self.system900.is_some() && !System900::runs(program);
+        is_foreign.then_some((MessageId::BlockNotSupported, FOREIGN))
+    }
+
     /// What reads the program, by its language.
     fn reader(&self, program: Arc<Program>) -> Box<dyn Reader> {
+        if let Some(machine) = self.system900.as_ref().filter(|_| System900::runs(&program)) {
+            return Box::new(machine.reader(&program));
+        }
         let settings = &self.settings;
         let AbsentAxes { missing, plc, slaves } = settings.absent;
         let absent = missing.union(plc).union(slaves);
@@ -382,6 +411,9 @@ impl TestRun {
 pub fn stop_function(run: &dyn Reader, block: BlockRef) -> Option<&'static str> {
     if let Some(run) = NcReader::of(run) {
         return run.stop_function(block);
+    }
+    if Reader900::of(run).is_some() {
+        return Some("M0");
     }
     let chunk = run
         .program(block.program)?

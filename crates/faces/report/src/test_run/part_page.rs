@@ -21,16 +21,16 @@ pub fn write_page(
     path: &Path,
     recording: Recording,
     tested: &Tested,
-    model: ControlModel,
+    control: &str,
 ) -> Result<(), ReportError> {
-    let about = about(&recording, tested, model);
+    let about = about(&recording, tested, control);
     let mut file = NewFile::create(path)?;
     bahn_viewer::write_page(&mut file, recording, tested.part.as_ref(), &about)
         .map_err(|error| files::cannot("write", path, &error))?;
     Ok(file.finish()?)
 }
 
-fn about(recording: &Recording, tested: &Tested, model: ControlModel) -> About {
+fn about(recording: &Recording, tested: &Tested, control: &str) -> About {
     let (report, run) = (&tested.report, &*tested.reader);
     let listings: Vec<Listing> = recording
         .programs()
@@ -45,7 +45,7 @@ fn about(recording: &Recording, tested: &Tested, model: ControlModel) -> About {
     };
     About {
         title: report.program.clone(),
-        model: model.to_string().to_uppercase(),
+        model: control.to_owned(),
         facts: facts(report),
         error: report.error.as_ref().map(|error| Remark {
             text: match error.detail.as_str() {
