@@ -46,6 +46,7 @@ mod run_rules;
 mod scope;
 mod scripts;
 mod shelf;
+mod system900_machine;
 mod tables;
 mod technology;
 mod test_on_a_machine;

@@ -1,0 +1,119 @@
+//! Machines with a System 900: what is checked in their folder, and programs that run on them without servo and PLC.
+
+use serde_json::json;
+
+use crate::support::{Folder, copy};
+
+/// A folder with the shipped portal in it.
+fn portal() -> Folder {
+    let folder = Folder::new();
+    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
+    copy(&shipped, &folder.path("portal"));
+    folder
+}
+
+#[test]
+fn the_portal_is_fine() {
+    let folder = portal();
+    let run = folder.bahn("machine check portal --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    assert_eq!(
+        (&report[0]["ok"], &report[0]["model"]),
+        (&json!(true), &json!("system900")),
+        "{report}"
+    );
+    assert_eq!(
+        report[0]["programs"].as_array().map(Vec::len),
+        Some(2),
+        "{report}"
+    );
+}
+
+/// Head 1 mills 420 + 210 + 10 * pi / 2 + 390 + 220 mm on each of both fixtures with 2400 mm/min, goes down 7 mm with 800 and
+/// drills four holes of 14 mm with 600.
+#[test]
+fn a_program_runs_in_its_channel() {
+    let folder = portal();
+    let run = folder.bahn("test portal/programs/P1000.900 --machine portal --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    let edge = 420.0 + 210.0 + 10.0 * std::f64::consts::FRAC_PI_2 + 390.0 + 220.0;
+    let feed = report["path_mm"]["feed"].as_f64().unwrap();
+    let wanted = 2.0 * (edge + 7.0) + 4.0 * 14.0;
+    assert!((feed - wanted).abs() < 1e-6, "{feed} {wanted}");
+    let least_s = 60.0 * (2.0 * (edge / 2400.0 + 7.0 / 800.0) + 4.0 * 14.0 / 600.0) + 4.0 * 0.2;
+    let time = report["machining_time_s"].as_f64().unwrap();
+    assert!((least_s..1.5 * least_s).contains(&time), "{time} {least_s}");
+    let text = folder
+        .bahn("test portal/programs/P1000.900 --machine portal")
+        .out();
+    assert!(
+        text.starts_with("Program           P1000.900 (mm), SYSTEM 900"),
+        "{text}"
+    );
+    // Head 2 has its own axes and tools: T11 is none of channel 1.
+    let run = folder.bahn("test portal/programs/P2000.900 --machine portal --path head2.svg --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert!(folder.read("head2.svg").contains("<svg"));
+}
+
+#[test]
+fn faults_have_their_place() {
+    let folder = portal();
+    folder.write(
+        "P1000.900",
+        "{ part }\nN10 G54 G1 X5 F100\nN20 G3 X0 Y10.1 I-5 J0\nN30 M30\n",
+    );
+    let run = folder.bahn("test P1000.900 --machine portal");
+    assert_eq!(run.code(), 1, "{}", run.err());
+    let err = run.err();
+    assert!(err.contains("M1238") && err.contains("P1000.900:3"), "{err}");
+    folder.write("X.H", "BEGIN PGM X MM\nEND PGM X MM\n");
+    let run = folder.bahn("test X.H --machine portal");
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.err().contains("this machine has a System 900"),
+        "{}",
+        run.err()
+    );
+    let run = folder.bahn("test P1000.900 --machine portal --mp 1010.0=3000");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("--mp is for a TNC"), "{}", run.err());
+}
+
+/// All that takes the folder of a TNC says why it does not take this one.
+#[test]
+fn what_is_for_a_tnc_says_so() {
+    let folder = portal();
+    for command in [
+        "run --machine portal",
+        "mp check portal",
+        "panel --machine portal",
+        "torture --machine portal",
+    ] {
+        let run = folder.bahn(command);
+        assert!(run.code() == 1 || run.code() == 2, "{command}: {}", run.code());
+        assert!(run.err().contains("System 900"), "{command}: {}", run.err());
+    }
+}
+
+#[test]
+fn wrong_folders_have_all_their_faults() {
+    let folder = portal();
+    let toml = "name = 'p'\ncontrol = 'tnc'\nparameters = 'wrong.q'\nanswers = ['lunch']\nbeam = 2\n";
+    folder.write("portal/machine.toml", toml);
+    folder.write("portal/wrong.q", "q2: 9\n");
+    let run = folder.bahn("machine check portal");
+    assert_eq!(run.code(), 1);
+    let err = run.err();
+    for said in [
+        "machine.toml:2:11",
+        "the only control here is",
+        "`lunch` is no standard answer",
+        "unknown key `beam`",
+        "wrong.q:1:5",
+    ] {
+        assert!(err.contains(said), "{said} is missing in\n{err}");
+    }
+}
