@@ -1,6 +1,6 @@
 //! G2 and G3: the arc between two positions of the control.
 
-use bahn_path::{Arc, Curve, Plane, Point2, Position, Sense, sweep_deg};
+use bahn_path::{Arc, Plane, Point2, Position, Sense, sweep_deg};
 
 use crate::refusal::Refusal;
 
@@ -68,13 +68,8 @@ fn about(s: Point2, e: Point2, radius: f64, sense: Sense, admitted_mm: f64) -> R
     ])
 }
 
-/// The length of an arc by itself, mm.
+/// The radius of an arc, mm; where it changes the one in the middle.
 pub(crate) fn radius(arc: &Arc, start: &Position, end: &Position) -> f64 {
     let (from, to) = arc.radii(start, end);
     (from + to) / 2.0
-}
-
-/// An arc as a curve.
-pub(crate) fn curve(arc: Arc) -> Curve {
-    Curve::Arc(arc)
 }

@@ -242,7 +242,7 @@ impl Work<'_> {
 
     pub fn wait(&mut self, barrier: Barrier, then: Then) {
         self.run.idle = 0;
-        self.run.queue.push_back(Item::Barrier(barrier, then));
+        self.run.queue.push_back(Item::Barrier(Box::new(barrier), then));
     }
 
     /// Whether the movement of the block ends with an exact stop: G8, G28, and G0 by P8858 [002:4651-4660].

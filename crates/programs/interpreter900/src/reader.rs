@@ -325,8 +325,8 @@ impl ElementSource for Reader900 {
             match run.queue.pop_front() {
                 Some(Item::Element(element)) => return Step::Element(*element),
                 Some(Item::Barrier(barrier, then)) => {
-                    run.waiting = Some((barrier, then));
-                    return Step::Barrier(barrier);
+                    run.waiting = Some((*barrier, then));
+                    return Step::Barrier(*barrier);
                 }
                 None => {}
             }

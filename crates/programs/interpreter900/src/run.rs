@@ -98,7 +98,7 @@ pub(crate) enum Then {
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
     Element(Box<PathElement>),
-    Barrier(Barrier, Then),
+    Barrier(Box<Barrier>, Then),
 }
 
 #[derive(Clone, Debug)]
