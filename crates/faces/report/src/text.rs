@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use bahn_parameters::ControlModel;
 
 use crate::ReportError;
 use crate::record::Report;

@@ -3,7 +3,6 @@
 use bahn_reader::Reader;
 use std::path::Path;
 
-use bahn_parameters::ControlModel;
 use bahn_path::BlockRef;
 use bahn_viewer::{About, Listing, Recording, Remark};
 
