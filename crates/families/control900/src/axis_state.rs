@@ -66,7 +66,7 @@ impl Watch {
         monitored: bool,
     ) -> Option<u32> {
         let block = &place.block;
-        if !unit.servo.closed() {
+        if !unit.servo.closed() || !unit.enabled {
             *self = Watch::default();
             return None;
         }
@@ -83,7 +83,10 @@ impl Watch {
                 least_mm,
                 time_s: limit_s,
             };
-            if self.lag.passes(&rule, unit.speed, lag_mm, time_s) {
+            if self
+                .lag
+                .passes(&rule, unit.servo.profile_mm_min() / 60.0, lag_mm, time_s)
+            {
                 return Some(LAG);
             }
         }

@@ -125,11 +125,12 @@ impl Channel {
         }
     }
 
-    /// What of it a cycle asks of the run.
-    pub fn demands(&self, held: bool) -> Demands {
+    /// What of it a cycle asks of the run, whose path is held, or stops before a block.
+    pub fn demands(&self, held: bool, stop_before: Option<u64>) -> Demands {
         Demands {
             single_block: matches!(self.mode, Mode::Single | Mode::Positioning),
             crowded: self.safety_stop || !self.axes_enabled || self.jump.is_some() || held,
+            stop_before,
             ..Demands::default()
         }
     }

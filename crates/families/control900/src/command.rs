@@ -6,7 +6,8 @@
 
 use bahn_system900::{AxisParameter, ChannelParameter, Meaning, Place, Together};
 
-use crate::channel::Mode;
+use crate::answers::bit;
+use crate::channel::{Channel, Mode};
 use crate::machine::Machine;
 use crate::{hand, monitor};
 
@@ -20,8 +21,17 @@ pub(crate) fn notice(machine: &mut Machine, place: Place) {
         Meaning::OfChannel(number, parameter) => notice_channel(machine, number, parameter),
         Meaning::OfAxis(physical, parameter) => notice_axis(machine, physical, parameter),
         Meaning::Override(number) => machine.memory.show_override(number),
+        Meaning::Locks => follow_locks(machine),
         Meaning::Nothing => {}
     }
+}
+
+/// Locks follow their switches, and the modes of the channels.
+fn follow_locks(machine: &mut Machine) {
+    let automatic = |channel: &&Channel| channel.mode != Mode::Hand;
+    let channels = machine.channels.iter().filter(automatic);
+    let automatic = channels.fold(0u8, |all, channel| all | bit(channel.number));
+    machine.memory.follow_locks(automatic);
 }
 
 fn notice_axis(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
@@ -54,6 +64,7 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
         | ChannelParameter::HighMessage
         | ChannelParameter::LowMessage
         | ChannelParameter::DisplayMessage => monitor::order_message(machine, number, parameter),
+        ChannelParameter::AutomaticLocks => follow_locks(machine),
         ChannelParameter::ManualMove => hand::begin_by_hand(machine, number),
         ChannelParameter::NextStep if value == Some(1) => hand::next_step(machine, number),
         _ => {}
@@ -118,6 +129,7 @@ fn take_mode(machine: &mut Machine, number: u8, mode: i64) {
     machine
         .memory
         .set_channel(number, ChannelParameter::Mode, mode.number());
+    follow_locks(machine);
 }
 
 /// P8704: start, where nothing is in its way, or stop.

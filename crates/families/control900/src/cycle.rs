@@ -157,8 +157,12 @@ fn move_channel(machine: &mut Machine, k: usize) {
     if wanted.abort {
         machine.break_off(k);
     }
-    let held = enable::is_locked(machine, k);
-    let Some(demands) = machine.channels.get(k).map(|channel| channel.demands(held)) else {
+    let locked = enable::locked(machine, k);
+    let Some(demands) = machine
+        .channels
+        .get(k)
+        .map(|channel| channel.demands(locked.now, locked.next))
+    else {
         return;
     };
     let Some((run, _, mut site)) = machine.parts(k) else {
@@ -172,7 +176,7 @@ fn move_channel(machine: &mut Machine, k: usize) {
     if run.may_move(|_| false, &mut site.acting()) {
         match run.moves(&demands, &mut site) {
             Came::On | Came::NoThread => {}
-            Came::BlockEnd => run.end_block(demands.single_block, false),
+            Came::BlockEnd => run.end_block(demands.single_block, locked.next.is_some()),
             Came::Refused(_) => machine.break_off(k),
             Came::Stop(stop) => take(machine, k, stop),
         }

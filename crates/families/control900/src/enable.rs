@@ -1,6 +1,7 @@
 //! What holds the loops and lets the axes move: P8700, P8701, P8702, P8891, clamps [002:3752-3767].
 
 use bahn_kernel::AxisUnit;
+use bahn_path::PathElement;
 use bahn_system900::{AxisParameter, ChannelParameter, Memory};
 
 use crate::machine::Machine;
@@ -51,8 +52,9 @@ pub(crate) fn follow_enables(machine: &mut Machine) {
         if unit.enabled != channel.axes_enabled {
             unit.enabled = channel.axes_enabled;
             unit.servo.set_enabled(channel.axes_enabled);
-            if !channel.axes_enabled {
-                unit.stand(unit.nominal);
+            match channel.axes_enabled {
+                true => unit.go_back(),
+                false => unit.stand(unit.nominal),
             }
         }
     }
@@ -66,21 +68,36 @@ pub(crate) fn follow_enables(machine: &mut Machine) {
     }
 }
 
-/// P8891: a move of a locked axis is due, or is executed [002:4765-4770].
-pub(crate) fn is_locked(machine: &Machine, k: usize) -> bool {
+/// What P8891 holds up of the path of a channel [002:4765-4770].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Locked {
+    /// The block that is executed moves a locked axis.
+    pub now: bool,
+    /// The next one does: its place in the order of execution.
+    pub next: Option<u64>,
+}
+
+/// P8891: moves of locked axes are due.
+pub(crate) fn locked(machine: &Machine, k: usize) -> Locked {
     let Some(channel) = machine.channels.get(k) else {
-        return false;
+        return Locked::default();
     };
-    let bits = machine
+    let lock = machine
         .memory
-        .of_channel(channel.number, ChannelParameter::AxisLock)
-        .bits()
-        .unwrap_or(0);
-    let Some(element) = channel.run.element().filter(|_| bits != 0) else {
-        return false;
+        .of_channel(channel.number, ChannelParameter::AxisLock);
+    let bits = lock.bits().unwrap_or(0);
+    if bits == 0 {
+        return Locked::default();
+    }
+    let is_locked = |element: &&PathElement| {
+        let mut own = machine.core.axes.owned(k);
+        own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
     };
-    let mut own = machine.core.axes.owned(k);
-    own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
+    let next = channel.run.track.path.next_element().filter(is_locked);
+    Locked {
+        now: channel.run.element().filter(is_locked).is_some(),
+        next: next.map(|element| element.sequence),
+    }
 }
 
 /// P12140, P12141: the nominal position is where the axis is [002:8272-8282].

@@ -15,6 +15,12 @@ pub struct StandardAnswers {
     pub tools: bool,
 }
 
+impl Default for StandardAnswers {
+    fn default() -> StandardAnswers {
+        StandardAnswers::ALL
+    }
+}
+
 impl StandardAnswers {
     /// All of them.
     pub const ALL: StandardAnswers = StandardAnswers {

@@ -27,6 +27,8 @@ ChannelParameter {
     MessageAxis = 8504,
     /// P8508: acknowledges the messages of the control [002:939-948].
     Acknowledge = 8508,
+    /// P8510: locks in AUTO.
+    AutomaticLocks = 8510,
     /// P8550: number of the channel.
     ChannelNumber = 8550,
     /// P8551: number of its axes.

@@ -38,6 +38,7 @@ mod descriptor;
 mod edit;
 mod file;
 mod live;
+mod locks;
 mod m_functions;
 mod m_table;
 mod memory;

@@ -19,6 +19,8 @@ pub enum Meaning {
     OfAxis(u8, AxisParameter),
     /// An override, from 1 on: how its potentiometer stands.
     Override(u8),
+    /// A switch of locks, or what it locks.
+    Locks,
     /// Nothing that runs a routine.
     Nothing,
 }
@@ -37,6 +39,9 @@ impl Memory {
         }
         if let Some(number) = crate::shared_block::override_at(number) {
             return Meaning::Override(number);
+        }
+        if crate::locks::is_switch(number) {
+            return Meaning::Locks;
         }
         let of_channel = (1..=self.channels()).find_map(|channel| {
             let fixed = self.descriptor(channel).fixed()?;

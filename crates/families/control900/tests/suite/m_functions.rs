@@ -3,8 +3,8 @@
 use bahn_control900::{StandardAnswers, When};
 use bahn_path::{At, Axis, Synchronisation};
 
-use crate::list::Line;
-use crate::rig::Rig;
+use crate::support::Rig;
+use crate::support::list::Line;
 
 /// The example of the manual: M7 branches, M6 goes out before the path with stop, M5 after it with stop, M4 before it,
 /// flying.

@@ -3,8 +3,8 @@
 use bahn_control900::{Mode, StandardAnswers};
 use bahn_path::Axis;
 
-use crate::list::Line;
-use crate::rig::Rig;
+use crate::support::Rig;
+use crate::support::list::Line;
 
 /// X to 100 and Y to 50, then both back to 10 and 20.
 fn two_lines() -> [Line; 2] {
