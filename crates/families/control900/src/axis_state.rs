@@ -54,6 +54,8 @@ pub(crate) struct Watch {
     lag: LagWatch,
     /// The nominal position stands, the axis is not within its exact stop, since so long, s.
     restless_s: f64,
+    /// It is too far from its master since so long, s.
+    pub apart_s: f64,
 }
 
 impl Watch {

@@ -8,7 +8,7 @@ use bahn_system900::ChannelParameter;
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, enable, hand, plc};
+use crate::{branch, coupling, enable, hand, plc};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -77,7 +77,9 @@ impl Family for Machine {
         hand::move_axes(self, measured);
     }
 
-    fn settle(&mut self) {}
+    fn settle(&mut self) {
+        coupling::follow(self);
+    }
 
     fn rest(&mut self, _: &Measured) {
         for channel in &mut self.channels {
@@ -158,13 +160,11 @@ fn move_channel(machine: &mut Machine, k: usize) {
         machine.break_off(k);
     }
     let locked = enable::locked(machine, k);
-    let Some(demands) = machine
-        .channels
-        .get(k)
-        .map(|channel| channel.demands(locked.now, locked.next))
-    else {
+    let axes = machine.core.axes.of(k);
+    let Some(channel) = machine.channels.get(k) else {
         return;
     };
+    let demands = channel.demands(locked.now || !channel.run.track.is_able(&axes), locked.next);
     let Some((run, _, mut site)) = machine.parts(k) else {
         return;
     };

@@ -37,6 +37,7 @@ mod branch;
 mod channel;
 mod command;
 mod control;
+mod coupling;
 mod cycle;
 mod enable;
 mod hand;

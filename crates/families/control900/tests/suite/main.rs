@@ -7,6 +7,7 @@ mod support;
 
 mod axes;
 mod by_hand;
+mod couplings;
 mod m_functions;
 mod monitors;
 mod programs;
