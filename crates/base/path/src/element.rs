@@ -305,6 +305,20 @@ pub enum Function {
     Synchronise,
     /// The blank of the graphics (BLK FORM).
     Blank(Blank),
+    /// A parameter of the control that is written when the path comes there; cleared without a value [002:268-273].
+    Write {
+        /// The system parameter.
+        q: u32,
+        /// What it is given.
+        value: Option<f64>,
+    },
+    /// An M function whose acknowledgement gives up what is left of the way, and goes on elsewhere [002:5484-5491].
+    Branch {
+        /// The function.
+        m: u16,
+        /// The block with which the program goes on.
+        target: u32,
+    },
 }
 
 /// What output S gives for a laser or a water jet until the next one, 0 to 9.999 V [000:9841-9909].

@@ -121,6 +121,8 @@ impl Stopwatch {
             | Function::Voltage(_)
             | Function::Superimpose(_)
             | Function::Plc(_)
+            | Function::Write { .. }
+            | Function::Branch { .. }
             | Function::Blank(_) => 0.0,
         }
     }

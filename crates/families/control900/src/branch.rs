@@ -26,13 +26,15 @@ pub(crate) fn jump(machine: &mut Machine, k: usize) {
     channel.run.track.path.clear();
     let axes = machine.core.axes.of(k);
     let (here, limits) = (axes.programmed_position(), axes.traverse_box());
-    if let Some(feeder) = &mut channel.feeder {
-        feeder.return_to(branch.sequence, &here, &channel.chain, limits);
+    let chain = channel.chain.clone();
+    channel.run.track.path.set_position(chain.to_path(&here));
+    channel.run.track.forget_position();
+    machine.lend(k);
+    if let Some((_, Some(feeder), _)) = machine.parts(k) {
+        feeder.return_to(branch.sequence, &here, &chain, limits);
         feeder.reader_mut().goto(branch.target);
     }
-    let here = channel.chain.to_path(&here);
-    channel.run.track.path.set_position(here);
-    channel.run.track.forget_position();
+    machine.take_back(k);
     store_measured(machine, k);
 }
 

@@ -59,6 +59,32 @@ pub(crate) struct Wanted {
     pub abort: bool,
 }
 
+/// System parameters that programs have written, which may run a routine.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Written(Vec<u32>);
+
+impl Written {
+    /// As many as a cycle brings at most.
+    const KEPT: usize = 1024;
+
+    /// Makes room.
+    pub fn reserve(&mut self) {
+        if self.0.capacity() < Written::KEPT {
+            self.0.reserve(Written::KEPT - self.0.len());
+        }
+    }
+
+    /// One was written.
+    pub fn push(&mut self, q: u32) {
+        self.0.push(q);
+    }
+
+    /// The first one that nobody has looked at.
+    pub fn take(&mut self) -> Option<u32> {
+        (!self.0.is_empty()).then(|| self.0.remove(0))
+    }
+}
+
 /// A channel of the control.
 #[derive(Clone)]
 pub(crate) struct Channel {
@@ -85,6 +111,8 @@ pub(crate) struct Channel {
     pub axes_enabled: bool,
     pub safety_stop: bool,
     pub loops_enabled: bool,
+    /// The block that is shown, and its number.
+    pub shown: Option<(BlockRef, u32)>,
     /// Override of the path, %.
     pub override_percent: f64,
 }
@@ -121,6 +149,7 @@ impl Channel {
             axes_enabled: false,
             safety_stop: false,
             loops_enabled: false,
+            shown: None,
             override_percent: 100.0,
         }
     }
@@ -154,6 +183,7 @@ pub(crate) struct Site<'a> {
     pub branch: &'a mut Option<Branch>,
     pub transfers: &'a mut Transfers,
     pub memory: &'a mut Memory,
+    pub written: &'a mut Written,
     /// Where functions go out now.
     pub at: Option<FunctionOutput>,
     pub now: Now,
@@ -180,6 +210,7 @@ impl Site<'_> {
             stop,
             branch,
             block: self.at.map_or(0, |at| at.block.block),
+            at: self.at.map_or_else(BlockRef::default, |at| at.block),
             ack_us: None,
             taken: false,
         });
@@ -209,8 +240,14 @@ impl Outputs for Site<'_> {
     }
 
     fn output(&mut self, function: &Function) -> bool {
-        if let Function::M(m) = function {
-            self.transfer(*m, None);
+        match function {
+            Function::M(m) => self.transfer(*m, None),
+            Function::Branch { m, target } => self.transfer(*m, Some(*target)),
+            Function::Write { q, value } => {
+                self.memory.store_exact(bahn_system900::Place::Q(*q), *value);
+                self.written.push(*q);
+            }
+            _ => {}
         }
         true
     }

@@ -57,6 +57,7 @@ impl Control900 {
     pub fn prepare(&mut self) {
         self.machine.messages.reserve();
         self.machine.transfers.reserve();
+        self.machine.written.reserve();
         for k in 0..self.machine.channels.len() {
             branch::jump(&mut self.machine, k);
             self.machine.prepare(k);

@@ -4,11 +4,11 @@ use bahn_kernel::{AxisUnit, Came, Circuit, CircuitOrder, Core, Family, Mover, Ru
 use bahn_motion::Stop;
 use bahn_path::LiveData;
 use bahn_servo::{Commands, Measured};
-use bahn_system900::ChannelParameter;
+use bahn_system900::{ChannelParameter, Place};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, coupling, enable, hand, plc};
+use crate::{branch, command, coupling, enable, hand, plc};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -122,13 +122,9 @@ fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
 fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
     let number = k as u8 + 1;
     let (block, axis, text) = match fault {
-        RunFault::Program(error) => (error.block.block, None, error.detail.clone()),
-        RunFault::Limit { axis, block, .. } => {
-            (block.block, Some(*axis), format!("software limit of {axis}"))
-        }
-        RunFault::Absent { axis, block, .. } => {
-            (block.block, Some(*axis), format!("there is no axis {axis}"))
-        }
+        RunFault::Program(error) => (error.block, None, error.detail.clone()),
+        RunFault::Limit { axis, block, .. } => (*block, Some(*axis), format!("software limit of {axis}")),
+        RunFault::Absent { axis, block, .. } => (*block, Some(*axis), format!("there is no axis {axis}")),
     };
     let logical = axis.and_then(|axis| {
         let unit = machine.core.axes.owned(k).find(|unit| unit.axis == axis)?;
@@ -142,9 +138,11 @@ fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
     machine
         .memory
         .set_channel(number, ChannelParameter::FaultProgram, program);
-    machine
-        .memory
-        .set_channel(number, ChannelParameter::FaultBlock, block.into());
+    machine.memory.set_channel(
+        number,
+        ChannelParameter::FaultBlock,
+        machine.block_number(k, block).into(),
+    );
     machine.say(0, number, logical, Kind::High, text.into());
     machine.break_off(k);
 }
@@ -165,6 +163,7 @@ fn move_channel(machine: &mut Machine, k: usize) {
         return;
     };
     let demands = channel.demands(locked.now || !channel.run.track.is_able(&axes), locked.next);
+    let sent = machine.transfers.count();
     let Some((run, _, mut site)) = machine.parts(k) else {
         return;
     };
@@ -181,6 +180,10 @@ fn move_channel(machine: &mut Machine, k: usize) {
             Came::Stop(stop) => take(machine, k, stop),
         }
     }
+    number_blocks(machine, k, sent);
+    while let Some(q) = machine.written.take() {
+        command::notice(machine, Place::Q(q));
+    }
     let Some((run, feeder, mut site)) = machine.parts(k) else {
         return;
     };
@@ -190,4 +193,12 @@ fn move_channel(machine: &mut Machine, k: usize) {
         site.axes.release(|mover| mover == Mover::Path);
     }
     site.axes.slow_down(time_s);
+}
+
+/// Transfers that went out since there were so many get the numbers of their blocks.
+fn number_blocks(machine: &mut Machine, k: usize, sent: u64) {
+    let mut transfers = std::mem::take(&mut machine.transfers);
+    let count = usize::try_from(transfers.count() - sent).unwrap_or(0);
+    transfers.number(count, |block| machine.block_number(k, block));
+    machine.transfers = transfers;
 }

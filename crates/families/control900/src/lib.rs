@@ -53,6 +53,6 @@ mod units;
 pub use channel::Mode;
 pub use control::Control900;
 pub use message::{Kind, Message};
-pub use setup::{Setup, StandardAnswers};
+pub use setup::{Language, Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
 pub use units::ideal_machine;

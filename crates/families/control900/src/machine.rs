@@ -2,14 +2,14 @@
 
 use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
 use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
-use bahn_path::Position;
+use bahn_path::{BlockRef, Position};
 use bahn_system900::{ChannelParameter, Memory};
 
 use crate::answers::Answers;
 use crate::axis_state::{AxisPlace, Hand, Watch};
-use crate::channel::{Channel, Site};
+use crate::channel::{Channel, Site, Written};
 use crate::message::{Kind, Message, Messages};
-use crate::setup::Setup;
+use crate::setup::{Language, Setup};
 use crate::transfer::Transfers;
 use crate::units;
 
@@ -33,6 +33,8 @@ pub(crate) struct Machine {
     pub hands: Vec<Hand>,
     pub messages: Messages,
     pub transfers: Transfers,
+    pub written: Written,
+    pub language: Option<Language>,
     pub answers: Answers,
     pub now_us: u64,
     pub plc_us: u64,
@@ -67,6 +69,8 @@ impl Machine {
             places,
             messages: Messages::default(),
             transfers: Transfers::default(),
+            written: Written::default(),
+            language: setup.language,
             answers: Answers::new(setup.answers),
             now_us: 0,
             plc_us: u64::from(setup.plc_us.max(1)),
@@ -113,6 +117,7 @@ impl Machine {
             branch: &mut channel.branch,
             transfers: &mut self.transfers,
             memory: &mut self.memory,
+            written: &mut self.written,
             at: None,
             now,
         };
@@ -135,12 +140,49 @@ impl Machine {
             run.set_off(&site.acting());
             self.begin(k, start_block.unwrap_or(0));
         }
-        let Some((run, Some(feeder), mut site)) = self.parts(k) else {
-            return;
-        };
-        if run.progress().is_on_its_way() {
+        self.lend(k);
+        if let Some((run, Some(feeder), mut site)) = self.parts(k)
+            && run.progress().is_on_its_way()
+        {
             let allowed = run.allowed(now_us);
             run.prepare(feeder, allowed, Position::ZERO, &site.acting(), |_, _| {});
+        }
+        self.take_back(k);
+    }
+
+    /// The number of a block of the program of a channel, as programs write it.
+    pub fn block_number(&self, k: usize, block: BlockRef) -> u32 {
+        let feeder = self.channels.get(k).and_then(|channel| channel.feeder.as_ref());
+        match (self.language, feeder) {
+            (Some(language), Some(feeder)) => (language.number)(feeder.reader(), block),
+            _ => block.block,
+        }
+    }
+
+    /// A program that is read has the parameters meanwhile.
+    pub fn lend(&mut self, k: usize) {
+        let reader = self
+            .channels
+            .get_mut(k)
+            .and_then(|channel| channel.feeder.as_mut());
+        if let (Some(language), Some(feeder)) = (self.language, reader) {
+            let memory = std::mem::replace(&mut self.memory, Memory::none());
+            if let Some(memory) = (language.give)(feeder.reader_mut(), memory) {
+                self.memory = memory;
+            }
+        }
+    }
+
+    /// The parameters are back.
+    pub fn take_back(&mut self, k: usize) {
+        let reader = self
+            .channels
+            .get_mut(k)
+            .and_then(|channel| channel.feeder.as_mut());
+        if let (Some(language), Some(feeder)) = (self.language, reader)
+            && let Some(memory) = (language.take)(feeder.reader_mut())
+        {
+            self.memory = memory;
         }
     }
 
@@ -161,12 +203,15 @@ impl Machine {
         let Some(program) = &channel.program else {
             return;
         };
-        let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
-        feeder.reader_mut().relocate(&here);
-        if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
-            feeder.reader_mut().goto(block);
+        channel.feeder = Some(Feeder::new(program.boxed(), channel.chain.clone(), within));
+        self.lend(k);
+        if let Some((_, Some(feeder), _)) = self.parts(k) {
+            feeder.reader_mut().relocate(&here);
+            if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
+                feeder.reader_mut().goto(block);
+            }
         }
-        channel.feeder = Some(feeder);
+        self.take_back(k);
     }
 
     /// A message comes, and does what its kind says.
@@ -218,7 +263,7 @@ impl Machine {
             return;
         };
         if channel.run.progress().is_active() {
-            let (number, block) = (channel.number, i64::from(channel.block().block));
+            let (number, block) = (channel.number, i64::from(self.block_number(k, channel.block())));
             let program = self
                 .memory
                 .of_channel(number, ChannelParameter::Program)

@@ -45,6 +45,17 @@ pub(crate) fn show(machine: &mut Machine) {
 
 fn show_channel(machine: &mut Machine, k: usize) {
     let referenced = machine.is_referenced(k);
+    let executed = machine.channels.get(k).and_then(|channel| channel.run.element());
+    let executed = executed.map(|element| element.block);
+    let shown = machine.channels.get(k).and_then(|channel| channel.shown);
+    let block = match (executed, shown) {
+        (Some(executed), Some((shown, number))) if executed == shown => number,
+        (Some(executed), _) => machine.block_number(k, executed),
+        (None, _) => 0,
+    };
+    if let Some(channel) = machine.channels.get_mut(k) {
+        channel.shown = executed.map(|executed| (executed, block));
+    }
     let Some(channel) = machine.channels.get(k) else {
         return;
     };
@@ -71,7 +82,7 @@ fn show_channel(machine: &mut Machine, k: usize) {
         .whole()
         .unwrap_or(0);
     memory.set_channel(number, ChannelParameter::ActualProgram, program);
-    memory.set_channel(number, ChannelParameter::ActualBlock, element.block.block.into());
+    memory.set_channel(number, ChannelParameter::ActualBlock, block.into());
     let interpolation = match (&element.curve, element.feed) {
         (Curve::Arc(arc), _) if arc.sweep_deg < 0.0 => 2,
         (Curve::Arc(_), _) => 3,

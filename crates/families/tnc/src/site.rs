@@ -81,11 +81,13 @@ impl<'a> Site<'a> {
             Function::Superimpose(range) => self.chain.superimposed.set_range(*range),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
             // the blank concerns nothing that moves;
-            // a voltage belongs to the path.
+            // a voltage belongs to the path; no program of a TNC writes parameters or branches by an acknowledgement.
             Function::Stop
             | Function::SpindleOrientation(_)
             | Function::Synchronise
             | Function::Voltage(_)
+            | Function::Write { .. }
+            | Function::Branch { .. }
             | Function::Blank(_) => {}
         }
         true

@@ -124,6 +124,17 @@ impl Memory {
         self.put(place, Cell { mantissa, status });
     }
 
+    /// Stores a number as a program gives it: decimals are raised to what it needs, at most nine [002:364].
+    pub fn store_exact(&mut self, place: Place, number: Option<f64>) {
+        let least = self.at(place).status.decimals();
+        let needs = |decimals: &u8| {
+            let counted = number.unwrap_or(0.0) * scale(*decimals);
+            (counted - counted.round()).abs() < 1e-6 * counted.abs().max(1.0)
+        };
+        let decimals = (least..=DECIMALS_MAX).find(needs).unwrap_or(DECIMALS_MAX);
+        self.store(place, number, decimals);
+    }
+
     /// Stores bits as they are.
     pub fn store_bits(&mut self, place: Place, bits: i32) {
         let status = self.at(place).status.with_decimals(0).loaded(true);

@@ -1,7 +1,7 @@
 //! M functions on their way to the PLC [002:5455-5517].
 
 use bahn_control900::{StandardAnswers, When};
-use bahn_path::{At, Axis, Synchronisation};
+use bahn_path::{At, Axis, Function, Synchronisation};
 
 use crate::support::Rig;
 use crate::support::list::Line;
@@ -94,4 +94,69 @@ fn a_definition_takes_effect_with_the_mode() {
     rig.start(1, &lines);
     rig.until_end(1);
     assert_eq!(rig.control.transfers().count(), 1);
+}
+
+/// M7.50 goes out before the way to X 80. Confirmed at X 60, the way is given up within its ramp, the measured positions are
+/// written, and the program goes on at N50.
+#[test]
+fn a_confirmed_branch_gives_the_way_up() {
+    let mut rig = Rig::on(EXAMPLE);
+    let branch = Function::Branch { m: 7, target: 50 };
+    let x = |x| Line::to(&[(Axis::X, x)], 3000.0);
+    let lines = [
+        x(40.0),
+        x(80.0).says(branch, At::Start, Synchronisation::MvsSvs),
+        x(90.0),
+        x(95.0),
+        Line::to(&[(Axis::Y, 10.0)], 3000.0),
+    ];
+    let mut other = rig.clone();
+    rig.start(1, &lines);
+    rig.until(|rig| rig.exact("P12151") > 60.0);
+    rig.plc("P8706", "1");
+    rig.until_end(1);
+    // 50 mm/s brake on 3.1 mm.
+    let stopped = rig.read("P12151");
+    assert!((63.1..=63.6).contains(&stopped), "{stopped}");
+    assert_eq!((rig.read("P12351"), rig.read("P12153")), (10.0, stopped));
+    let transfer = *rig.control.transfers().next().unwrap();
+    assert_eq!(
+        (transfer.m, transfer.when, transfer.branch, transfer.taken),
+        (7, When::Before, true, true)
+    );
+    assert!(transfer.ack_us.is_some());
+
+    // Without the confirmation, which no standard answer gives, the block is executed to its end.
+    other.start(1, &lines);
+    other.until_end(1);
+    assert_eq!((other.read("P12151"), other.read("P12351")), (95.0, 10.0));
+    let transfer = *other.control.transfers().next().unwrap();
+    assert_eq!(
+        (transfer.branch, transfer.taken, transfer.ack_us),
+        (true, false, None)
+    );
+}
+
+/// A write on the path is done when the path comes there, with all its decimals; it may run a routine: P12312 positions axis 2.
+#[test]
+fn a_write_on_the_path_is_done_there() {
+    let mut rig = Rig::on("");
+    let write = |q, value| Function::Write {
+        q,
+        value: Some(value),
+    };
+    let lines = [
+        Line::to(&[(Axis::X, 40.0)], 3000.0),
+        Line::to(&[(Axis::X, 80.0)], 3000.0)
+            .says(write(10_050, 1.23456), At::Start, Synchronisation::Mos)
+            .says(write(2312, 7.5), At::Start, Synchronisation::Mos),
+    ];
+    rig.start(1, &lines);
+    rig.until(|rig| rig.exact("P12151") > 39.0);
+    assert!(rig.read("P50").is_nan());
+    rig.until(|rig| rig.exact("P12151") > 41.0);
+    assert_eq!(rig.read("P50"), 1.23456);
+    rig.until_end(1);
+    rig.until(|rig| rig.read("P12392") == 1.0);
+    assert_eq!(rig.read("P12351"), 7.5);
 }
