@@ -2,7 +2,7 @@
 
 use bahn_kernel::{AxisUnit, LagRule, LagWatch};
 use bahn_path::Direction;
-use bahn_system900::{AxisBlock, Connection};
+use bahn_system900::{AxisBlock, AxisParameter, Connection};
 
 /// Numbers of the messages [002:7044-7127] [002:6893-6903].
 const LAG: u32 = 2001;
@@ -21,6 +21,27 @@ pub(crate) struct AxisPlace {
     pub block: AxisBlock,
 }
 
+/// What says that a position is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Report {
+    pub parameter: AxisParameter,
+    /// It is the one so many after it.
+    pub after: u32,
+    /// Its bits.
+    pub bits: i32,
+}
+
+impl Report {
+    /// P12191, P12192.
+    pub fn reached(after: u32) -> Report {
+        Report {
+            parameter: AxisParameter::Reached,
+            after,
+            bits: 1,
+        }
+    }
+}
+
 /// Where a position of the PLC or a step leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Goal {
@@ -28,8 +49,8 @@ pub(crate) struct Goal {
     pub position: f64,
     /// mm/min.
     pub feed_mm_min: f64,
-    /// Which of P12191 and P12192 says that it is reached; `None` for a step by hand.
-    pub reports: Option<u32>,
+    /// What says that it is reached: a parameter, the number of one after it, and its bits; nothing for a step by hand.
+    pub reports: Option<Report>,
 }
 
 /// What leads an axis beside all paths.

@@ -111,6 +111,8 @@ pub(crate) struct Channel {
     pub axes_enabled: bool,
     pub safety_stop: bool,
     pub loops_enabled: bool,
+    /// How fast the slopes of its axes let the path be, mm/min.
+    pub slope_mm_min: f64,
     /// The block that is shown, and its number.
     pub shown: Option<(BlockRef, u32)>,
     /// Override of the path, %.
@@ -149,6 +151,7 @@ impl Channel {
             axes_enabled: false,
             safety_stop: false,
             loops_enabled: false,
+            slope_mm_min: f64::INFINITY,
             shown: None,
             override_percent: 100.0,
         }

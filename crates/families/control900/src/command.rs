@@ -9,7 +9,7 @@ use bahn_system900::{AxisParameter, ChannelParameter, Meaning, Place, Together};
 use crate::answers::bit;
 use crate::channel::{Channel, Mode};
 use crate::machine::Machine;
-use crate::{hand, monitor};
+use crate::{hand, monitor, positions};
 
 /// Values of P8682 [002:3613-3619].
 const KEY_STOP: i64 = 1;
@@ -38,6 +38,8 @@ fn notice_axis(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
     match parameter {
         AxisParameter::GoRelative | AxisParameter::GoAbsolute => hand::position(machine, physical, parameter),
         AxisParameter::Reference => hand::begin_seek(machine, physical),
+        AxisParameter::GoEmergency => positions::go_emergency(machine, physical),
+        AxisParameter::GoFixed => positions::go_fixed(machine, physical),
         _ => {}
     }
 }

@@ -45,6 +45,7 @@ mod machine;
 mod message;
 mod monitor;
 mod plc;
+mod positions;
 mod setup;
 mod status;
 mod transfer;

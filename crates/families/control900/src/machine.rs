@@ -99,7 +99,7 @@ impl Machine {
             program_rapid: false,
             axis_keys: PerPlcAxis::splat(None),
             wheel_mm: PerPlcAxis::splat(0.0),
-            rapid_limit_mm_min: f64::INFINITY,
+            rapid_limit_mm_min: channel.slope_mm_min,
         })
     }
 

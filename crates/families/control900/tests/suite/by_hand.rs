@@ -1,5 +1,9 @@
 //! Axes beside all paths [002:3983-4140] [002:7795-8042] [002:6575-6627].
 
+use bahn_control900::Kind;
+use bahn_path::Axis;
+
+use crate::support::list::Line;
 use crate::support::{Rig, axis};
 
 /// Key plus of X with 1200 mm/min; it goes on until the key is released, at most to the software limit.
@@ -124,4 +128,57 @@ fn a_key_switch_locks_parameters() {
     assert_eq!(rig.read("P50"), 2.0);
     rig.plc("P50", "4");
     assert_eq!(rig.read("P50"), 4.0);
+}
+
+/// P12132: emergency position absolute, P12032, at the greatest speed; M2000 is shown, the program of the channel is broken off.
+#[test]
+fn an_axis_goes_to_its_emergency_position() {
+    let mut rig = Rig::on("q2032: -20\nq2036: 12\nq2123: 600\n");
+    rig.start(2, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
+    rig.start(1, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
+    rig.until(|rig| rig.read("P12151") > 20.0);
+    rig.plc("P12132", "$1");
+    rig.until(|rig| rig.read("P12182") == 1.0);
+    assert_eq!(
+        (rig.read("P12151"), rig.read("P8685"), rig.read("2:P8685")),
+        (-20.0, 0.0, 2.0)
+    );
+    let message = &rig.control.messages()[0];
+    assert_eq!(
+        (message.number, message.channel, message.kind),
+        (2000, 1, Kind::Display)
+    );
+    // P12133: the fixed position with P12123.
+    rig.plc("P12133", "$1");
+    rig.seconds(0.5);
+    assert_eq!(rig.read("P12167"), 600.0);
+    rig.until(|rig| rig.read("P12183") == 1.0);
+    assert_eq!(rig.read("P12151"), 12.0);
+}
+
+/// P12136: while slope 1 acts the axis is no faster than 10 % of P12004; P12137 locks a direction.
+#[test]
+fn slopes_and_locks_act_on_axes() {
+    let mut rig = Rig::on("");
+    rig.plc("P12136", "$1");
+    rig.start(
+        1,
+        &[
+            Line::to(&[(Axis::X, 100.0)], 3000.0),
+            Line::to(&[(Axis::X, 0.0)], 3000.0),
+        ],
+    );
+    rig.seconds(2.0);
+    assert_eq!(rig.read("P12167"), 600.0);
+    rig.plc("P12136", "0");
+    rig.plc("P12137", "$0100");
+    rig.seconds(5.0);
+    assert_eq!(
+        (rig.read("P12151"), rig.read("P8685")),
+        (100.0, 2.0),
+        "minus is locked"
+    );
+    rig.plc("P12137", "0");
+    rig.until_end(1);
+    assert_eq!(rig.read("P12151"), 0.0);
 }
