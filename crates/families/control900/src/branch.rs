@@ -29,12 +29,12 @@ pub(crate) fn jump(machine: &mut Machine, k: usize) {
     let chain = channel.chain.clone();
     channel.run.track.path.set_position(chain.to_path(&here));
     channel.run.track.forget_position();
-    machine.lend(k);
+    machine.give_memory(k);
     if let Some((_, Some(feeder), _)) = machine.parts(k) {
         feeder.return_to(branch.sequence, &here, &chain, limits);
         feeder.reader_mut().goto(branch.target);
     }
-    machine.take_back(k);
+    machine.take_memory(k);
     store_measured(machine, k);
 }
 

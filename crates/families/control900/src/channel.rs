@@ -14,6 +14,9 @@ use bahn_system900::{Acts, ChannelParameter, MTable, Memory};
 
 use crate::transfer::{Transfer, Transfers, When};
 
+/// The tool change [002:1795-1801].
+const TOOL_CHANGE: u16 = 6;
+
 /// The modes of a channel [002:3773-3787].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
@@ -103,6 +106,8 @@ pub(crate) struct Channel {
     pub m: MTable,
     /// M functions with stop wait for their acknowledgement.
     pub waits_for_m: bool,
+    /// M6 went out.
+    pub changes_tool: bool,
     /// A branch that waits for its confirmation, until its block is over: the target.
     pub branch: Option<Branch>,
     /// The branch was confirmed: the path stops, and goes on there.
@@ -146,6 +151,7 @@ impl Channel {
             wanted: Wanted::default(),
             m: MTable::of(memory, number),
             waits_for_m: false,
+            changes_tool: false,
             branch: None,
             jump: None,
             axes_enabled: false,
@@ -183,6 +189,7 @@ pub(crate) struct Site<'a> {
     pub spindle: &'a mut SpindleLoop,
     pub m: &'a MTable,
     pub waits_for_m: &'a mut bool,
+    pub changes_tool: &'a mut bool,
     pub branch: &'a mut Option<Branch>,
     pub transfers: &'a mut Transfers,
     pub memory: &'a mut Memory,
@@ -194,7 +201,7 @@ pub(crate) struct Site<'a> {
 
 impl Site<'_> {
     /// An M function goes to the PLC, as its definition says.
-    fn transfer(&mut self, m: u16, target: Option<u32>) {
+    pub fn transfer(&mut self, m: u16, target: Option<u32>) {
         let rule = self.m.rule(m);
         if matches!(rule.acts, Acts::None | Acts::Cycle) {
             return;
@@ -221,6 +228,7 @@ impl Site<'_> {
             self.memory
                 .set_channel(self.number, ChannelParameter::BlockRelease, 0);
         }
+        *self.changes_tool |= m == TOOL_CHANGE;
         match (branch, target) {
             (true, Some(target)) => {
                 let sequence = self.at.map_or(0, |at| at.sequence);

@@ -66,6 +66,15 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
         | ChannelParameter::HighMessage
         | ChannelParameter::LowMessage
         | ChannelParameter::DisplayMessage => monitor::order_message(machine, number, parameter),
+        ChannelParameter::TakeTool | ChannelParameter::OffsetCommand | ChannelParameter::StoreTool => {
+            let k = usize::from(number) - 1;
+            let in_hand = machine
+                .channels
+                .get(k)
+                .is_some_and(|channel| channel.mode == Mode::Hand);
+            machine.memory.command_tool(number, parameter, in_hand);
+        }
+        ChannelParameter::ManualM => manual_m(machine, number),
         ChannelParameter::AutomaticLocks => follow_locks(machine),
         ChannelParameter::ManualMove => hand::begin_by_hand(machine, number),
         ChannelParameter::NextStep if value == Some(1) => hand::next_step(machine, number),
@@ -171,6 +180,21 @@ fn release(machine: &mut Machine, number: u8) {
     } else if let Some(branch) = channel.branch.take() {
         channel.jump = Some(branch);
         machine.transfers.branch(number, machine.now_us);
+    }
+}
+
+/// P8690: an M function by hand goes to the PLC [002:3714-3715].
+fn manual_m(machine: &mut Machine, number: u8) {
+    let m = machine
+        .memory
+        .of_channel(number, ChannelParameter::ManualM)
+        .whole();
+    let m = m.and_then(|m| u16::try_from(m).ok());
+    let Some((_, _, mut site)) = machine.parts(usize::from(number) - 1) else {
+        return;
+    };
+    if let Some(m) = m {
+        site.transfer(m, None);
     }
 }
 

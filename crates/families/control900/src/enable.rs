@@ -94,7 +94,8 @@ pub(crate) fn locked(machine: &Machine, k: usize) -> Locked {
         .of_channel(channel.number, ChannelParameter::AxisLock);
     let bits = lock.bits().unwrap_or(0);
     let is_locked = |element: &&PathElement| {
-        let mut own = machine.places.iter().zip(machine.core.axes.iter());
+        let own = machine.places.iter().zip(machine.core.axes.iter());
+        let mut own = own.filter(|(place, _)| usize::from(place.channel) == k);
         own.any(|(place, unit)| {
             let way = element.end[unit.axis] - element.start[unit.axis];
             let direction = if way < 0.0 {
@@ -102,9 +103,9 @@ pub(crate) fn locked(machine: &Machine, k: usize) -> Locked {
             } else {
                 Direction::Plus
             };
-            let is_own = usize::from(place.channel) == k && element.moves_axis(unit.axis);
+            let is_moved = element.moves_axis(unit.axis);
             let by_direction = || is_locked(&machine.memory, place.physical, direction);
-            is_own && (bits >> unit.index & 1 != 0 || by_direction())
+            is_moved && (bits >> unit.index & 1 != 0 || by_direction())
         })
     };
     let next = channel.run.track.path.next_element().filter(is_locked);

@@ -205,7 +205,7 @@ pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
             .iter()
             .zip(&mut machine.hands)
             .zip(machine.core.axes.iter_mut());
-        for ((place, hand), unit) in axes.filter(|(_, unit)| unit.channel == k) {
+        for ((place, hand), unit) in axes.filter(|((place, _), _)| usize::from(place.channel) == k) {
             if !is_hand {
                 hand.key = None;
             }

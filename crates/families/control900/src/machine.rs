@@ -114,6 +114,7 @@ impl Machine {
             spindle: &mut channel.spindle,
             m: &channel.m,
             waits_for_m: &mut channel.waits_for_m,
+            changes_tool: &mut channel.changes_tool,
             branch: &mut channel.branch,
             transfers: &mut self.transfers,
             memory: &mut self.memory,
@@ -140,14 +141,14 @@ impl Machine {
             run.set_off(&site.acting());
             self.begin(k, start_block.unwrap_or(0));
         }
-        self.lend(k);
+        self.give_memory(k);
         if let Some((run, Some(feeder), mut site)) = self.parts(k)
             && run.progress().is_on_its_way()
         {
             let allowed = run.allowed(now_us);
             run.prepare(feeder, allowed, Position::ZERO, &site.acting(), |_, _| {});
         }
-        self.take_back(k);
+        self.take_memory(k);
     }
 
     /// The number of a block of the program of a channel, as programs write it.
@@ -160,7 +161,7 @@ impl Machine {
     }
 
     /// A program that is read has the parameters meanwhile.
-    pub fn lend(&mut self, k: usize) {
+    pub fn give_memory(&mut self, k: usize) {
         let reader = self
             .channels
             .get_mut(k)
@@ -174,7 +175,7 @@ impl Machine {
     }
 
     /// The parameters are back.
-    pub fn take_back(&mut self, k: usize) {
+    pub fn take_memory(&mut self, k: usize) {
         let reader = self
             .channels
             .get_mut(k)
@@ -204,14 +205,14 @@ impl Machine {
             return;
         };
         channel.feeder = Some(Feeder::new(program.boxed(), channel.chain.clone(), within));
-        self.lend(k);
+        self.give_memory(k);
         if let Some((_, Some(feeder), _)) = self.parts(k) {
             feeder.reader_mut().relocate(&here);
             if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
                 feeder.reader_mut().goto(block);
             }
         }
-        self.take_back(k);
+        self.take_memory(k);
     }
 
     /// A message comes, and does what its kind says.
@@ -300,6 +301,8 @@ impl Machine {
 
     /// All axes of a channel are referenced.
     pub(crate) fn is_referenced(&self, k: usize) -> bool {
-        self.core.axes.owned(k).all(|unit| unit.referenced)
+        let own = self.places.iter().zip(self.core.axes.iter());
+        let mut own = own.filter(|(place, _)| usize::from(place.channel) == k);
+        own.all(|(_, unit)| unit.referenced)
     }
 }

@@ -98,9 +98,10 @@ fn show_channel(machine: &mut Machine, k: usize) {
     }
     // Where the block leads the axes.
     let decimals = memory.position_decimals(number);
-    for (place, unit) in machine.places.iter().zip(machine.core.axes.iter()) {
+    let own = machine.places.iter().zip(machine.core.axes.iter());
+    for (place, unit) in own.filter(|(place, _)| usize::from(place.channel) == k) {
         let end = element.end[unit.axis];
-        if usize::from(place.channel) == k && !unit.is_plc_axis() && end.is_finite() {
+        if !unit.is_plc_axis() && end.is_finite() {
             show_programmed(memory, place, end, decimals);
         }
     }

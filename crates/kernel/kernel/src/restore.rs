@@ -219,7 +219,11 @@ impl PassOver for Scan<'_, '_> {
                 element: 0,
                 block: giver.block,
                 sequence: giver.sequence,
-                place: if function.at == At::End { Place::End } else { Place::Start },
+                place: if function.at == At::End {
+                    Place::End
+                } else {
+                    Place::Start
+                },
                 waits: true,
             });
             return match self.family.output(&function.function) {

@@ -15,6 +15,22 @@ ChannelParameter {
     DeltaPositions = 7096,
     /// P7128: display shifts.
     DisplayShifts = 7128,
+    /// P8040: T is not read.
+    ToolLock = 8040,
+    /// P8045: a tool is taken into the spindle.
+    TakeTool = 8045,
+    /// P8046: the offset block is loaded.
+    OffsetCommand = 8046,
+    /// P8047: the spindle block goes back to the array.
+    StoreTool = 8047,
+    /// P8050: the tool for the PLC, its parameters follow.
+    PlcTool = 8050,
+    /// P8100: the tool in the spindle.
+    SpindleTool = 8100,
+    /// P8150: the tool that the path is computed with.
+    OffsetTool = 8150,
+    /// P8200: the tool of the block that is executed.
+    RealTimeTool = 8200,
     /// P8500: message of the system, ends all channels.
     SystemMessage = 8500,
     /// P8501: message of high priority, ends the channel.

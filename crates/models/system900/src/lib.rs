@@ -50,6 +50,7 @@ mod shared_block;
 mod slots;
 mod status;
 mod table;
+mod tool_blocks;
 mod tools;
 mod value;
 mod zero;

@@ -160,3 +160,25 @@ fn a_write_on_the_path_is_done_there() {
     rig.until(|rig| rig.read("P12392") == 1.0);
     assert_eq!(rig.read("P12351"), 7.5);
 }
+
+/// At M6 the standard answers store the tool of the spindle, group 3, and take that of the real-time block, group 2: P8047:1,
+/// then P8045:2 [002:1776-1790].
+#[test]
+fn the_standard_answer_changes_the_tool() {
+    let tools = "q104: 30000\nq105: 1000\nq3: 40000\nq175: 20000\nq176: 4\nq178: 20\n\
+        P20040: 3\nP20041: 1\nP8100: 3\nP8101: 1\nP8110: 5.5\nP8200: 2\nP8210: 8\nP8040: 1\n";
+    let mut rig = Rig::on(&format!("{EXAMPLE}{tools}"));
+    rig.start(1, &with(6, At::Start, Synchronisation::MvsSvs));
+    rig.until_end(1);
+    // The radius of the old one is in its record, that of the new one in the spindle; T is read again.
+    let after = ["P20050", "P8100", "P8110", "P8040"].map(|name| rig.read(name));
+    assert_eq!(after, [5.5, 2.0, 8.0, 0.0]);
+}
+
+/// P8690 sends an M function by hand.
+#[test]
+fn an_m_function_goes_out_by_hand() {
+    let mut rig = Rig::on(EXAMPLE);
+    rig.operator("P8690", "4");
+    assert_eq!(rig.control.transfers().next().map(|transfer| transfer.m), Some(4));
+}
