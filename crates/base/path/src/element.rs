@@ -305,18 +305,18 @@ pub enum Function {
     Synchronise,
     /// The blank of the graphics (BLK FORM).
     Blank(Blank),
-    /// A parameter of the control that is written when the path comes there; cleared without a value [002:268-273].
+    /// A parameter of a System 900 that is written when the path comes to it [002:268-273].
     Write {
         /// The system parameter.
         q: u32,
-        /// What it is given.
+        /// What it gets; `None` clears it.
         value: Option<f64>,
     },
-    /// An M function whose acknowledgement gives up what is left of the way, and goes on elsewhere [002:5484-5491].
+    /// An M function of a System 900 whose acknowledgement ends the movement of its block and jumps [002:5484-5491].
     Branch {
-        /// The function.
+        /// Its number.
         m: u16,
-        /// The block with which the program goes on.
+        /// The block to jump to, of the program that it stands in, as [`BlockRef::block`] counts.
         target: u32,
     },
 }
