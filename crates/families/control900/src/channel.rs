@@ -98,6 +98,12 @@ pub(crate) struct Channel {
     pub spindle: SpindleLoop,
     /// What starts.
     pub program: Option<Box<dyn Reader>>,
+    /// Emergency programs 1 to 4.
+    pub emergency: [Option<Box<dyn Reader>>; 4],
+    /// One of them was called.
+    pub called: Option<usize>,
+    /// One of them is what starts, or runs.
+    pub runs: Option<usize>,
     /// What runs.
     pub feeder: Option<Feeder>,
     pub mode: Mode,
@@ -146,6 +152,9 @@ impl Channel {
             chain: Chain::new(Arc::new(Cartesian), offsets),
             spindle: SpindleLoop::none(timing),
             program: None,
+            emergency: [const { None }; 4],
+            called: None,
+            runs: None,
             feeder: None,
             mode: Mode::Hand,
             wanted: Wanted::default(),
@@ -170,6 +179,15 @@ impl Channel {
             crowded: self.safety_stop || !self.axes_enabled || self.jump.is_some() || held,
             stop_before,
             ..Demands::default()
+        }
+    }
+
+    /// What a start runs.
+    pub fn starting(&self) -> Option<&dyn Reader> {
+        let emergency = |which: usize| self.emergency.get(which).and_then(Option::as_deref);
+        match self.runs {
+            Some(which) => emergency(which),
+            None => self.program.as_deref(),
         }
     }
 

@@ -75,6 +75,10 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
             machine.memory.command_tool(number, parameter, in_hand);
         }
         ChannelParameter::ManualM => manual_m(machine, number),
+        ChannelParameter::Emergency if value == Some(1) => call(machine, number, 0),
+        ChannelParameter::Emergency2 if value == Some(1) => call(machine, number, 1),
+        ChannelParameter::Emergency3 if value == Some(1) => call(machine, number, 2),
+        ChannelParameter::Emergency4 if value == Some(1) => call(machine, number, 3),
         ChannelParameter::AutomaticLocks => follow_locks(machine),
         ChannelParameter::ManualMove => hand::begin_by_hand(machine, number),
         ChannelParameter::NextStep if value == Some(1) => hand::next_step(machine, number),
@@ -151,7 +155,12 @@ fn take_start(machine: &mut Machine, number: u8, start: bool) {
         return;
     };
     match start {
-        true if may => channel.wanted.start = true,
+        true if may => {
+            channel.wanted.start = true;
+            if !channel.run.progress().is_on_its_way() {
+                channel.runs = None;
+            }
+        }
         true => machine.memory.set_channel(number, ChannelParameter::Start, 0),
         false => channel.wanted.stop = true,
     }
@@ -180,6 +189,21 @@ fn release(machine: &mut Machine, number: u8) {
     } else if let Some(branch) = channel.branch.take() {
         channel.jump = Some(branch);
         machine.transfers.branch(number, machine.now_us);
+    }
+}
+
+/// P8710 to P8713: an emergency program interrupts what runs; the mode is AUTO, sequence, from then on [002:3856-3882].
+fn call(machine: &mut Machine, number: u8, which: usize) {
+    let k = usize::from(number) - 1;
+    let is_there = |channel: &Channel| channel.emergency.get(which).is_some_and(Option::is_some);
+    if machine.channels.get(k).is_some_and(is_there) {
+        machine
+            .memory
+            .set_channel(number, ChannelParameter::ModeRequest, Mode::Sequence.number());
+        take_mode(machine, number, Mode::Sequence.number());
+        if let Some(channel) = machine.channels.get_mut(k) {
+            channel.called = Some(which);
+        }
     }
 }
 

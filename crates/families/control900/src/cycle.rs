@@ -130,11 +130,7 @@ fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
         let unit = machine.core.axes.owned(k).find(|unit| unit.axis == axis)?;
         Some(unit.index as u8 + 1)
     });
-    let program = machine
-        .memory
-        .of_channel(number, ChannelParameter::Program)
-        .whole()
-        .unwrap_or(0);
+    let [program, _] = machine.start_of(k);
     machine
         .memory
         .set_channel(number, ChannelParameter::FaultProgram, program);
@@ -157,6 +153,23 @@ fn move_channel(machine: &mut Machine, k: usize) {
     if wanted.abort {
         machine.break_off(k);
     }
+    let called = machine
+        .channels
+        .get_mut(k)
+        .and_then(|channel| channel.called.take());
+    if let Some(which) = called {
+        machine.break_off(k);
+        let number = k as u8 + 1;
+        let trigger = machine
+            .memory
+            .channel_place_at(number, ChannelParameter::Emergency, which as u32);
+        if let Some(trigger) = trigger {
+            machine.memory.store(trigger, Some(0.0), 0);
+        }
+        if let Some(channel) = machine.channels.get_mut(k) {
+            channel.runs = Some(which);
+        }
+    }
     let locked = enable::locked(machine, k);
     let axes = machine.core.axes.of(k);
     let Some(channel) = machine.channels.get(k) else {
@@ -169,7 +182,7 @@ fn move_channel(machine: &mut Machine, k: usize) {
     };
     if wanted.stop {
         run.stop();
-    } else if wanted.start {
+    } else if wanted.start || called.is_some() {
         run.start(&mut site);
     }
     if run.may_move(|_| false, &mut site.acting()) {

@@ -125,12 +125,22 @@ impl Machine {
         Some((&mut channel.run, channel.feeder.as_mut(), site))
     }
 
+    /// Number and block of what starts in a channel, or runs: P8800 and P8801, or those of an emergency program.
+    pub fn start_of(&self, k: usize) -> [i64; 2] {
+        let number = k as u8 + 1;
+        let first = match self.channels.get(k).and_then(|channel| channel.runs) {
+            Some(which) => (ChannelParameter::EmergencyProgram, 2 * which as u32),
+            None => (ChannelParameter::Program, 0),
+        };
+        [0, 1].map(|at| {
+            let place = self.memory.channel_place_at(number, first.0, first.1 + at);
+            place.and_then(|place| self.memory.at(place).whole()).unwrap_or(0)
+        })
+    }
+
     /// Reads ahead for a channel, outside the cycle; begins a run that is to begin.
     pub fn prepare(&mut self, k: usize) {
-        let start_block = self
-            .memory
-            .of_channel(k as u8 + 1, ChannelParameter::StartBlock)
-            .whole();
+        let [_, start_block] = self.start_of(k);
         let now_us = self.now_us;
         let Some((run, _, mut site)) = self.parts(k) else {
             return;
@@ -139,7 +149,7 @@ impl Machine {
         if run.takes_begin(|| site.axes.rest()) {
             run.begin();
             run.set_off(&site.acting());
-            self.begin(k, start_block.unwrap_or(0));
+            self.begin(k, start_block);
         }
         self.give_memory(k);
         if let Some((run, Some(feeder), mut site)) = self.parts(k)
@@ -201,7 +211,7 @@ impl Machine {
             return;
         };
         (channel.branch, channel.jump, channel.waits_for_m) = (None, None, false);
-        let Some(program) = &channel.program else {
+        let Some(program) = channel.starting() else {
             return;
         };
         channel.feeder = Some(Feeder::new(program.boxed(), channel.chain.clone(), within));
@@ -265,11 +275,7 @@ impl Machine {
         };
         if channel.run.progress().is_active() {
             let (number, block) = (channel.number, i64::from(self.block_number(k, channel.block())));
-            let program = self
-                .memory
-                .of_channel(number, ChannelParameter::Program)
-                .whole()
-                .unwrap_or(0);
+            let [program, _] = self.start_of(k);
             for (parameter, value) in [
                 (ChannelParameter::AbortProgram, program),
                 (ChannelParameter::AbortBlock, block),

@@ -45,6 +45,7 @@ pub(crate) fn show(machine: &mut Machine) {
 
 fn show_channel(machine: &mut Machine, k: usize) {
     let referenced = machine.is_referenced(k);
+    let [program, _] = machine.start_of(k);
     let executed = machine.channels.get(k).and_then(|channel| channel.run.element());
     let executed = executed.map(|element| element.block);
     let shown = machine.channels.get(k).and_then(|channel| channel.shown);
@@ -77,10 +78,6 @@ fn show_channel(machine: &mut Machine, k: usize) {
     let Some(element) = channel.run.element() else {
         return;
     };
-    let program = memory
-        .of_channel(number, ChannelParameter::Program)
-        .whole()
-        .unwrap_or(0);
     memory.set_channel(number, ChannelParameter::ActualProgram, program);
     memory.set_channel(number, ChannelParameter::ActualBlock, block.into());
     let interpolation = match (&element.curve, element.feed) {

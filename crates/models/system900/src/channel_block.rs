@@ -85,6 +85,14 @@ ChannelParameter {
     BlockRelease = 8706,
     /// P8709: the PLC says that all reference points are taken [002:3810-3816].
     Referenced = 8709,
+    /// P8710: calls emergency program 1; those of the others follow [002:3856-3882].
+    Emergency = 8710,
+    /// P8711: calls emergency program 2.
+    Emergency2 = 8711,
+    /// P8712: calls emergency program 3.
+    Emergency3 = 8712,
+    /// P8713: calls emergency program 4.
+    Emergency4 = 8713,
     /// P8750: how axes are moved by hand [002:3983-3993].
     ManualMode = 8750,
     /// P8751: the logical axis that is moved by hand.
@@ -121,6 +129,8 @@ ChannelParameter {
     RapidFeed = 8816,
     /// P8818: programmed feeds, %.
     FeedPercent = 8818,
+    /// P8820: emergency program 1 and its block; those of the others follow [002:4303-4314].
+    EmergencyProgram = 8820,
     /// P8865: the override of the path.
     PathOverride = 8865,
     /// P8866: the override of relative positions.
