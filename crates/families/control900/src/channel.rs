@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use bahn_kernel::{
-    Acting, Cartesian, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop,
-    Track,
+    Acting, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop, Track,
 };
 use bahn_motion::{FunctionOutput, Limits, Place};
 use bahn_path::{Axis, BlockRef, Function, LiveData, Position, Voltage};
@@ -12,6 +11,7 @@ use bahn_reader::Reader;
 use bahn_servo::Timing;
 use bahn_system900::{Acts, ChannelParameter, MTable, Memory};
 
+use crate::kinematics::OfAxes;
 use crate::transfer::{Transfer, Transfers, When};
 
 /// The tool change [002:1795-1801].
@@ -149,7 +149,7 @@ impl Channel {
         Channel {
             number,
             run: Run::new(Track::new(limits)),
-            chain: Chain::new(Arc::new(Cartesian), offsets),
+            chain: Chain::new(Arc::new(OfAxes), offsets),
             spindle: SpindleLoop::none(timing),
             program: None,
             emergency: [const { None }; 4],
@@ -276,6 +276,7 @@ impl Outputs for Site<'_> {
                 self.memory.store_exact(bahn_system900::Place::Q(*q), *value);
                 self.written.push(*q);
             }
+            Function::SpindleSpeed(rpm) => self.memory.program_speed(self.number, *rpm),
             _ => {}
         }
         true

@@ -41,6 +41,7 @@ mod coupling;
 mod cycle;
 mod enable;
 mod hand;
+mod kinematics;
 mod machine;
 mod message;
 mod monitor;

@@ -1,6 +1,6 @@
 //! What a control is told beside its parameters.
 
-use bahn_path::BlockRef;
+use bahn_path::{BlockRef, Position};
 use bahn_reader::Reader;
 use bahn_system900::Memory;
 
@@ -51,6 +51,9 @@ pub struct Language {
     pub give: fn(&mut dyn Reader, Memory) -> Option<Memory>,
     /// Takes them back; `None` when it has none.
     pub take: fn(&mut dyn Reader) -> Option<Memory>,
+    /// A program goes back before the block of a place in the order of execution, and on at a block of the same program, from
+    /// where the axes stand.
+    pub branch: fn(&mut dyn Reader, u64, u32, &Position),
     /// The number of a block as programs write it.
     pub number: fn(&dyn Reader, BlockRef) -> u32,
 }

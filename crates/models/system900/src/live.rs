@@ -54,6 +54,32 @@ impl Memory {
         of_channel.unwrap_or(Meaning::Nothing)
     }
 
+    /// A write runs a routine of the control: a program that writes it does so where the path is, not in the look-ahead.
+    pub fn runs_routine(&self, place: Place) -> bool {
+        match self.meaning(place) {
+            Meaning::OfAxis(_, parameter) => matches!(
+                parameter,
+                AxisParameter::GoRelative
+                    | AxisParameter::GoAbsolute
+                    | AxisParameter::GoEmergency
+                    | AxisParameter::GoFixed
+                    | AxisParameter::Reference
+            ),
+            Meaning::OfChannel(_, parameter) => matches!(
+                parameter,
+                ChannelParameter::SystemMessage
+                    | ChannelParameter::HighMessage
+                    | ChannelParameter::LowMessage
+                    | ChannelParameter::DisplayMessage
+                    | ChannelParameter::TakeTool
+                    | ChannelParameter::OffsetCommand
+                    | ChannelParameter::StoreTool
+            ),
+            Meaning::Override(_) | Meaning::Locks => true,
+            Meaning::Nothing => false,
+        }
+    }
+
     /// A memory without any parameter, where another one stood: it takes no room.
     pub fn none() -> Memory {
         Memory::of_nothing()

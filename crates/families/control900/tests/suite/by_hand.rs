@@ -1,7 +1,7 @@
 //! Axes beside all paths [002:3983-4140] [002:7795-8042] [002:6575-6627].
 
 use bahn_control900::Kind;
-use bahn_path::Axis;
+use bahn_path::{At, Axis, Function, Synchronisation};
 
 use crate::support::list::Line;
 use crate::support::{Rig, axis};
@@ -108,6 +108,23 @@ fn a_spindle_turns() {
     rig.plc("P11650", "0");
     rig.seconds(1.0);
     assert!(rig.read("P11649").abs() < 0.5);
+}
+
+/// q142 gives the word S of the channel to spindle 1; P11645 limits it to 800 rpm.
+#[test]
+fn a_programmed_speed_goes_to_its_spindle() {
+    let mut rig = Rig::on(&(axis(5) + "q142: 1\nq2801: 2\nq2804: 360000\nq1640: 5\nq1645: 800\n"));
+    let line = Line::to(&[(Axis::X, 10.0)], 3000.0);
+    rig.start(
+        1,
+        &[line.says(Function::SpindleSpeed(900.0), At::Start, Synchronisation::MvsSvs)],
+    );
+    rig.until_end(1);
+    assert_eq!(rig.read("P11648"), 900.0);
+    rig.plc("P11650", "1");
+    rig.until(|rig| rig.read("P11651") == 1.0);
+    rig.seconds(0.5);
+    assert!((rig.read("P11649") - 800.0).abs() < 0.5, "{}", rig.read("P11649"));
 }
 
 /// Key switch 2 sets lock 1: a parameter with its status bit is refused to the operator, not to the PLC
