@@ -13,7 +13,7 @@ use crate::numbers::AXES;
 pub const LOGICAL_AXES: usize = AXES as usize;
 
 /// What axes without a letter of their own on the path get.
-const FREE: [Axis; 9] = [
+const FREE: &[Axis] = &[
     Axis::U,
     Axis::V,
     Axis::W,
@@ -43,7 +43,7 @@ pub fn slots(memory: &Memory, channel: u8) -> [Option<Axis>; LOGICAL_AXES] {
         }
     }
     for (index, _) in named() {
-        let free = FREE.into_iter().find(|axis| !taken.contains(*axis));
+        let free = FREE.iter().copied().find(|axis| !taken.contains(*axis));
         if let (Some(axis), Some(slot @ None)) = (free, slots.get_mut(index)) {
             taken.insert(axis);
             *slot = Some(axis);
