@@ -11,7 +11,9 @@ use crate::timing::Timing;
 /// difference of the two.
 #[derive(Clone, Debug)]
 pub struct Gantry {
-    /// Position of the slave less that of the master when they are synchronous, mm.
+    /// The slave goes so much farther than its master.
+    ratio: f64,
+    /// Position of the slave less that of the master, in its ratio, when they are synchronous, mm.
     offset_mm: f64,
     /// Where the offset is driven to, mm.
     goal_mm: f64,
@@ -29,6 +31,7 @@ impl Gantry {
     /// [000:4498-4502].
     pub fn new(settings: CouplingSettings, speed_mm_min: f64, timing: Timing) -> Gantry {
         Gantry {
+            ratio: 1.0,
             offset_mm: 0.0,
             goal_mm: 0.0,
             part_mm: speed_mm_min * timing.contour_min(),
@@ -40,10 +43,34 @@ impl Gantry {
         }
     }
 
+    /// The same with a ratio of the ways: the slave goes so much farther than its master.
+    pub fn with_ratio(mut self, ratio: f64) -> Gantry {
+        self.ratio = ratio;
+        self
+    }
+
+    /// The two are in their relation where they are, mm, and stay in it.
+    pub fn relate(&mut self, master_mm: f64, slave_mm: f64) {
+        self.offset_mm = slave_mm - self.ratio * master_mm;
+        self.goal_mm = self.offset_mm;
+        self.synchronized = true;
+    }
+
+    /// The slave is to come to a place, mm, when its master is at another, and is synchronous from there on.
+    pub fn synchronise(&mut self, master_mm: f64, slave_mm: f64) {
+        self.goal_mm = slave_mm - self.ratio * master_mm;
+        (self.synchronized, self.referenced) = (false, true);
+    }
+
+    /// Where the slave is to be at a nominal position of its master, mm.
+    pub fn wanted(&self, nominal_mm: f64) -> f64 {
+        self.ratio * nominal_mm + self.offset_mm
+    }
+
     /// Takes the present relation of the two as it is, at switch-on. With MP860 = 0 they are synchronous from
     /// here on [000:4492-4496].
     pub fn switch_on(&mut self, master: &Axis, slave: &Axis) {
-        self.offset_mm = slave.actual_mm() - master.actual_mm();
+        self.offset_mm = slave.actual_mm() - self.ratio * master.actual_mm();
         self.goal_mm = self.offset_mm;
         self.synchronized = !self.from_marks;
     }
@@ -60,8 +87,8 @@ impl Gantry {
 
     /// The positions of the two were shifted by these ways, mm; their relation is what it was.
     pub fn shift(&mut self, master_mm: f64, slave_mm: f64) {
-        self.offset_mm += slave_mm - master_mm;
-        self.goal_mm += slave_mm - master_mm;
+        self.offset_mm += slave_mm - self.ratio * master_mm;
+        self.goal_mm += slave_mm - self.ratio * master_mm;
     }
 
     /// Commands the slave to the master's nominal position, mm, and compares the two. A difference above
@@ -69,8 +96,8 @@ impl Gantry {
     pub fn command(&mut self, nominal_mm: f64, master: &Axis, slave: &mut Axis) {
         let way = self.goal_mm - self.offset_mm;
         self.offset_mm += way.clamp(-self.part_mm, self.part_mm);
-        slave.command(nominal_mm + self.offset_mm);
-        self.difference_mm = master.actual_mm() + self.offset_mm - slave.actual_mm();
+        slave.command(self.wanted(nominal_mm));
+        self.difference_mm = self.wanted(master.actual_mm()) - slave.actual_mm();
         // Monitoring begins when the slave, with its lag, has come to the side of its master.
         let beside = self
             .limit_mm

@@ -2,7 +2,7 @@
 
 use bahn_kernel::{AxisUnit, LagRule, LagWatch};
 use bahn_path::Direction;
-use bahn_system900::{AxisBlock, Connection};
+use bahn_system900::{AxisBlock, AxisParameter, Connection};
 
 /// Numbers of the messages [002:7044-7127] [002:6893-6903].
 const LAG: u32 = 2001;
@@ -21,6 +21,27 @@ pub(crate) struct AxisPlace {
     pub block: AxisBlock,
 }
 
+/// What says that a position is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Report {
+    pub parameter: AxisParameter,
+    /// It is the one so many after it.
+    pub after: u32,
+    /// Its bits.
+    pub bits: i32,
+}
+
+impl Report {
+    /// P12191, P12192.
+    pub fn reached(after: u32) -> Report {
+        Report {
+            parameter: AxisParameter::Reached,
+            after,
+            bits: 1,
+        }
+    }
+}
+
 /// Where a position of the PLC or a step leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Goal {
@@ -28,8 +49,8 @@ pub(crate) struct Goal {
     pub position: f64,
     /// mm/min.
     pub feed_mm_min: f64,
-    /// Which of P12191 and P12192 says that it is reached; `None` for a step by hand.
-    pub reports: Option<u32>,
+    /// What says that it is reached: a parameter, the number of one after it, and its bits; nothing for a step by hand.
+    pub reports: Option<Report>,
 }
 
 /// What leads an axis beside all paths.
@@ -54,6 +75,8 @@ pub(crate) struct Watch {
     lag: LagWatch,
     /// The nominal position stands, the axis is not within its exact stop, since so long, s.
     restless_s: f64,
+    /// It is too far from its master since so long, s.
+    pub apart_s: f64,
 }
 
 impl Watch {
@@ -66,7 +89,7 @@ impl Watch {
         monitored: bool,
     ) -> Option<u32> {
         let block = &place.block;
-        if !unit.servo.closed() {
+        if !unit.servo.closed() || !unit.enabled {
             *self = Watch::default();
             return None;
         }
@@ -83,7 +106,10 @@ impl Watch {
                 least_mm,
                 time_s: limit_s,
             };
-            if self.lag.passes(&rule, unit.speed, lag_mm, time_s) {
+            if self
+                .lag
+                .passes(&rule, unit.servo.profile_mm_min() / 60.0, lag_mm, time_s)
+            {
                 return Some(LAG);
             }
         }

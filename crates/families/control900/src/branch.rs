@@ -26,13 +26,20 @@ pub(crate) fn jump(machine: &mut Machine, k: usize) {
     channel.run.track.path.clear();
     let axes = machine.core.axes.of(k);
     let (here, limits) = (axes.programmed_position(), axes.traverse_box());
-    if let Some(feeder) = &mut channel.feeder {
-        feeder.return_to(branch.sequence, &here, &channel.chain, limits);
-        feeder.reader_mut().goto(branch.target);
-    }
-    let here = channel.chain.to_path(&here);
-    channel.run.track.path.set_position(here);
+    let chain = channel.chain.clone();
+    let path = chain.to_path(&here);
+    let language = machine.language;
+    channel.run.track.path.set_position(path);
     channel.run.track.forget_position();
+    machine.give_memory(k);
+    if let Some((_, Some(feeder), _)) = machine.parts(k) {
+        feeder.return_to(branch.sequence, &here, &chain, limits);
+        match language {
+            Some(language) => (language.branch)(feeder.reader_mut(), branch.sequence, branch.target, &path),
+            None => feeder.reader_mut().goto(branch.target),
+        }
+    }
+    machine.take_memory(k);
     store_measured(machine, k);
 }
 

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use bahn_kernel::{
-    Acting, Cartesian, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop,
-    Track,
+    Acting, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop, Track,
 };
 use bahn_motion::{FunctionOutput, Limits, Place};
 use bahn_path::{Axis, BlockRef, Function, LiveData, Position, Voltage};
@@ -12,7 +11,11 @@ use bahn_reader::Reader;
 use bahn_servo::Timing;
 use bahn_system900::{Acts, ChannelParameter, MTable, Memory};
 
+use crate::kinematics::OfAxes;
 use crate::transfer::{Transfer, Transfers, When};
+
+/// The tool change [002:1795-1801].
+const TOOL_CHANGE: u16 = 6;
 
 /// The modes of a channel [002:3773-3787].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +62,32 @@ pub(crate) struct Wanted {
     pub abort: bool,
 }
 
+/// System parameters that programs have written, which may run a routine.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Written(Vec<u32>);
+
+impl Written {
+    /// As many as a cycle brings at most.
+    const KEPT: usize = 1024;
+
+    /// Makes room.
+    pub fn reserve(&mut self) {
+        if self.0.capacity() < Written::KEPT {
+            self.0.reserve(Written::KEPT - self.0.len());
+        }
+    }
+
+    /// One was written.
+    pub fn push(&mut self, q: u32) {
+        self.0.push(q);
+    }
+
+    /// The first one that nobody has looked at.
+    pub fn take(&mut self) -> Option<u32> {
+        (!self.0.is_empty()).then(|| self.0.remove(0))
+    }
+}
+
 /// A channel of the control.
 #[derive(Clone)]
 pub(crate) struct Channel {
@@ -69,6 +98,12 @@ pub(crate) struct Channel {
     pub spindle: SpindleLoop,
     /// What starts.
     pub program: Option<Box<dyn Reader>>,
+    /// Emergency programs 1 to 4.
+    pub emergency: [Option<Box<dyn Reader>>; 4],
+    /// One of them was called.
+    pub called: Option<usize>,
+    /// One of them is what starts, or runs.
+    pub runs: Option<usize>,
     /// What runs.
     pub feeder: Option<Feeder>,
     pub mode: Mode,
@@ -77,6 +112,8 @@ pub(crate) struct Channel {
     pub m: MTable,
     /// M functions with stop wait for their acknowledgement.
     pub waits_for_m: bool,
+    /// M6 went out.
+    pub changes_tool: bool,
     /// A branch that waits for its confirmation, until its block is over: the target.
     pub branch: Option<Branch>,
     /// The branch was confirmed: the path stops, and goes on there.
@@ -85,6 +122,10 @@ pub(crate) struct Channel {
     pub axes_enabled: bool,
     pub safety_stop: bool,
     pub loops_enabled: bool,
+    /// How fast the slopes of its axes let the path be, mm/min.
+    pub slope_mm_min: f64,
+    /// The block that is shown, and its number.
+    pub shown: Option<(BlockRef, u32)>,
     /// Override of the path, %.
     pub override_percent: f64,
 }
@@ -108,29 +149,45 @@ impl Channel {
         Channel {
             number,
             run: Run::new(Track::new(limits)),
-            chain: Chain::new(Arc::new(Cartesian), offsets),
+            chain: Chain::new(Arc::new(OfAxes), offsets),
             spindle: SpindleLoop::none(timing),
             program: None,
+            emergency: [const { None }; 4],
+            called: None,
+            runs: None,
             feeder: None,
             mode: Mode::Hand,
             wanted: Wanted::default(),
             m: MTable::of(memory, number),
             waits_for_m: false,
+            changes_tool: false,
             branch: None,
             jump: None,
             axes_enabled: false,
             safety_stop: false,
             loops_enabled: false,
+            slope_mm_min: f64::INFINITY,
+            shown: None,
             override_percent: 100.0,
         }
     }
 
-    /// What of it a cycle asks of the run.
-    pub fn demands(&self, held: bool) -> Demands {
+    /// What of it a cycle asks of the run, whose path is held, or stops before a block.
+    pub fn demands(&self, held: bool, stop_before: Option<u64>) -> Demands {
         Demands {
             single_block: matches!(self.mode, Mode::Single | Mode::Positioning),
             crowded: self.safety_stop || !self.axes_enabled || self.jump.is_some() || held,
+            stop_before,
             ..Demands::default()
+        }
+    }
+
+    /// What a start runs.
+    pub fn starting(&self) -> Option<&dyn Reader> {
+        let emergency = |which: usize| self.emergency.get(which).and_then(Option::as_deref);
+        match self.runs {
+            Some(which) => emergency(which),
+            None => self.program.as_deref(),
         }
     }
 
@@ -150,9 +207,11 @@ pub(crate) struct Site<'a> {
     pub spindle: &'a mut SpindleLoop,
     pub m: &'a MTable,
     pub waits_for_m: &'a mut bool,
+    pub changes_tool: &'a mut bool,
     pub branch: &'a mut Option<Branch>,
     pub transfers: &'a mut Transfers,
     pub memory: &'a mut Memory,
+    pub written: &'a mut Written,
     /// Where functions go out now.
     pub at: Option<FunctionOutput>,
     pub now: Now,
@@ -160,7 +219,7 @@ pub(crate) struct Site<'a> {
 
 impl Site<'_> {
     /// An M function goes to the PLC, as its definition says.
-    fn transfer(&mut self, m: u16, target: Option<u32>) {
+    pub fn transfer(&mut self, m: u16, target: Option<u32>) {
         let rule = self.m.rule(m);
         if matches!(rule.acts, Acts::None | Acts::Cycle) {
             return;
@@ -179,6 +238,7 @@ impl Site<'_> {
             stop,
             branch,
             block: self.at.map_or(0, |at| at.block.block),
+            at: self.at.map_or_else(BlockRef::default, |at| at.block),
             ack_us: None,
             taken: false,
         });
@@ -186,6 +246,7 @@ impl Site<'_> {
             self.memory
                 .set_channel(self.number, ChannelParameter::BlockRelease, 0);
         }
+        *self.changes_tool |= m == TOOL_CHANGE;
         match (branch, target) {
             (true, Some(target)) => {
                 let sequence = self.at.map_or(0, |at| at.sequence);
@@ -208,8 +269,15 @@ impl Outputs for Site<'_> {
     }
 
     fn output(&mut self, function: &Function) -> bool {
-        if let Function::M(m) = function {
-            self.transfer(*m, None);
+        match function {
+            Function::M(m) => self.transfer(*m, None),
+            Function::Branch { m, target } => self.transfer(*m, Some(*target)),
+            Function::Write { q, value } => {
+                self.memory.store_exact(bahn_system900::Place::Q(*q), *value);
+                self.written.push(*q);
+            }
+            Function::SpindleSpeed(rpm) => self.memory.program_speed(self.number, *rpm),
+            _ => {}
         }
         true
     }

@@ -6,9 +6,10 @@
 
 use bahn_system900::{AxisParameter, ChannelParameter, Meaning, Place, Together};
 
-use crate::channel::Mode;
+use crate::answers::bit;
+use crate::channel::{Channel, Mode};
 use crate::machine::Machine;
-use crate::{hand, monitor};
+use crate::{hand, monitor, positions};
 
 /// Values of P8682 [002:3613-3619].
 const KEY_STOP: i64 = 1;
@@ -20,14 +21,25 @@ pub(crate) fn notice(machine: &mut Machine, place: Place) {
         Meaning::OfChannel(number, parameter) => notice_channel(machine, number, parameter),
         Meaning::OfAxis(physical, parameter) => notice_axis(machine, physical, parameter),
         Meaning::Override(number) => machine.memory.show_override(number),
+        Meaning::Locks => follow_locks(machine),
         Meaning::Nothing => {}
     }
+}
+
+/// Locks follow their switches, and the modes of the channels.
+fn follow_locks(machine: &mut Machine) {
+    let automatic = |channel: &&Channel| channel.mode != Mode::Hand;
+    let channels = machine.channels.iter().filter(automatic);
+    let automatic = channels.fold(0u8, |all, channel| all | bit(channel.number));
+    machine.memory.follow_locks(automatic);
 }
 
 fn notice_axis(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
     match parameter {
         AxisParameter::GoRelative | AxisParameter::GoAbsolute => hand::position(machine, physical, parameter),
         AxisParameter::Reference => hand::begin_seek(machine, physical),
+        AxisParameter::GoEmergency => positions::go_emergency(machine, physical),
+        AxisParameter::GoFixed => positions::go_fixed(machine, physical),
         _ => {}
     }
 }
@@ -54,6 +66,20 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
         | ChannelParameter::HighMessage
         | ChannelParameter::LowMessage
         | ChannelParameter::DisplayMessage => monitor::order_message(machine, number, parameter),
+        ChannelParameter::TakeTool | ChannelParameter::OffsetCommand | ChannelParameter::StoreTool => {
+            let k = usize::from(number) - 1;
+            let in_hand = machine
+                .channels
+                .get(k)
+                .is_some_and(|channel| channel.mode == Mode::Hand);
+            machine.memory.command_tool(number, parameter, in_hand);
+        }
+        ChannelParameter::ManualM => manual_m(machine, number),
+        ChannelParameter::Emergency if value == Some(1) => call(machine, number, 0),
+        ChannelParameter::Emergency2 if value == Some(1) => call(machine, number, 1),
+        ChannelParameter::Emergency3 if value == Some(1) => call(machine, number, 2),
+        ChannelParameter::Emergency4 if value == Some(1) => call(machine, number, 3),
+        ChannelParameter::AutomaticLocks => follow_locks(machine),
         ChannelParameter::ManualMove => hand::begin_by_hand(machine, number),
         ChannelParameter::NextStep if value == Some(1) => hand::next_step(machine, number),
         _ => {}
@@ -118,6 +144,7 @@ fn take_mode(machine: &mut Machine, number: u8, mode: i64) {
     machine
         .memory
         .set_channel(number, ChannelParameter::Mode, mode.number());
+    follow_locks(machine);
 }
 
 /// P8704: start, where nothing is in its way, or stop.
@@ -128,7 +155,12 @@ fn take_start(machine: &mut Machine, number: u8, start: bool) {
         return;
     };
     match start {
-        true if may => channel.wanted.start = true,
+        true if may => {
+            channel.wanted.start = true;
+            if !channel.run.progress().is_on_its_way() {
+                channel.runs = None;
+            }
+        }
         true => machine.memory.set_channel(number, ChannelParameter::Start, 0),
         false => channel.wanted.stop = true,
     }
@@ -157,6 +189,36 @@ fn release(machine: &mut Machine, number: u8) {
     } else if let Some(branch) = channel.branch.take() {
         channel.jump = Some(branch);
         machine.transfers.branch(number, machine.now_us);
+    }
+}
+
+/// P8710 to P8713: an emergency program interrupts what runs; the mode is AUTO, sequence, from then on [002:3856-3882].
+fn call(machine: &mut Machine, number: u8, which: usize) {
+    let k = usize::from(number) - 1;
+    let is_there = |channel: &Channel| channel.emergency.get(which).is_some_and(Option::is_some);
+    if machine.channels.get(k).is_some_and(is_there) {
+        machine
+            .memory
+            .set_channel(number, ChannelParameter::ModeRequest, Mode::Sequence.number());
+        take_mode(machine, number, Mode::Sequence.number());
+        if let Some(channel) = machine.channels.get_mut(k) {
+            channel.called = Some(which);
+        }
+    }
+}
+
+/// P8690: an M function by hand goes to the PLC [002:3714-3715].
+fn manual_m(machine: &mut Machine, number: u8) {
+    let m = machine
+        .memory
+        .of_channel(number, ChannelParameter::ManualM)
+        .whole();
+    let m = m.and_then(|m| u16::try_from(m).ok());
+    let Some((_, _, mut site)) = machine.parts(usize::from(number) - 1) else {
+        return;
+    };
+    if let Some(m) = m {
+        site.transfer(m, None);
     }
 }
 

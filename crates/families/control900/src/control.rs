@@ -53,10 +53,23 @@ impl Control900 {
         }
     }
 
+    /// An emergency program of a channel, 1 to 4: that of P8820, P8822, P8824, P8826.
+    pub fn set_emergency_program(&mut self, channel: u8, which: u8, program: Option<Box<dyn Reader>>) {
+        let index = usize::from(channel).checked_sub(1);
+        let channel = index.and_then(|k| self.machine.channels.get_mut(k));
+        let which = usize::from(which).checked_sub(1);
+        if let (Some(channel), Some(which)) = (channel, which)
+            && let Some(slot) = channel.emergency.get_mut(which)
+        {
+            *slot = program;
+        }
+    }
+
     /// Reads ahead, outside the cycle: to be called before each one; may allocate.
     pub fn prepare(&mut self) {
         self.machine.messages.reserve();
         self.machine.transfers.reserve();
+        self.machine.written.reserve();
         for k in 0..self.machine.channels.len() {
             branch::jump(&mut self.machine, k);
             self.machine.prepare(k);

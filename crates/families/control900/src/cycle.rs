@@ -4,11 +4,11 @@ use bahn_kernel::{AxisUnit, Came, Circuit, CircuitOrder, Core, Family, Mover, Ru
 use bahn_motion::Stop;
 use bahn_path::LiveData;
 use bahn_servo::{Commands, Measured};
-use bahn_system900::ChannelParameter;
+use bahn_system900::{ChannelParameter, Place};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, enable, hand, plc};
+use crate::{branch, command, coupling, enable, hand, plc};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -77,7 +77,9 @@ impl Family for Machine {
         hand::move_axes(self, measured);
     }
 
-    fn settle(&mut self) {}
+    fn settle(&mut self) {
+        coupling::follow(self);
+    }
 
     fn rest(&mut self, _: &Measured) {
         for channel in &mut self.channels {
@@ -120,29 +122,23 @@ fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
 fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
     let number = k as u8 + 1;
     let (block, axis, text) = match fault {
-        RunFault::Program(error) => (error.block.block, None, error.detail.clone()),
-        RunFault::Limit { axis, block, .. } => {
-            (block.block, Some(*axis), format!("software limit of {axis}"))
-        }
-        RunFault::Absent { axis, block, .. } => {
-            (block.block, Some(*axis), format!("there is no axis {axis}"))
-        }
+        RunFault::Program(error) => (error.block, None, error.detail.clone()),
+        RunFault::Limit { axis, block, .. } => (*block, Some(*axis), format!("software limit of {axis}")),
+        RunFault::Absent { axis, block, .. } => (*block, Some(*axis), format!("there is no axis {axis}")),
     };
     let logical = axis.and_then(|axis| {
         let unit = machine.core.axes.owned(k).find(|unit| unit.axis == axis)?;
         Some(unit.index as u8 + 1)
     });
-    let program = machine
-        .memory
-        .of_channel(number, ChannelParameter::Program)
-        .whole()
-        .unwrap_or(0);
+    let [program, _] = machine.start_of(k);
     machine
         .memory
         .set_channel(number, ChannelParameter::FaultProgram, program);
-    machine
-        .memory
-        .set_channel(number, ChannelParameter::FaultBlock, block.into());
+    machine.memory.set_channel(
+        number,
+        ChannelParameter::FaultBlock,
+        machine.block_number(k, block).into(),
+    );
     machine.say(0, number, logical, Kind::High, text.into());
     machine.break_off(k);
 }
@@ -157,25 +153,49 @@ fn move_channel(machine: &mut Machine, k: usize) {
     if wanted.abort {
         machine.break_off(k);
     }
-    let held = enable::is_locked(machine, k);
-    let Some(demands) = machine.channels.get(k).map(|channel| channel.demands(held)) else {
+    let called = machine
+        .channels
+        .get_mut(k)
+        .and_then(|channel| channel.called.take());
+    if let Some(which) = called {
+        machine.break_off(k);
+        let number = k as u8 + 1;
+        let trigger = machine
+            .memory
+            .channel_place_at(number, ChannelParameter::Emergency, which as u32);
+        if let Some(trigger) = trigger {
+            machine.memory.store(trigger, Some(0.0), 0);
+        }
+        if let Some(channel) = machine.channels.get_mut(k) {
+            channel.runs = Some(which);
+        }
+    }
+    let locked = enable::locked(machine, k);
+    let axes = machine.core.axes.of(k);
+    let Some(channel) = machine.channels.get(k) else {
         return;
     };
+    let demands = channel.demands(locked.now || !channel.run.track.is_able(&axes), locked.next);
+    let sent = machine.transfers.count();
     let Some((run, _, mut site)) = machine.parts(k) else {
         return;
     };
     if wanted.stop {
         run.stop();
-    } else if wanted.start {
+    } else if wanted.start || called.is_some() {
         run.start(&mut site);
     }
     if run.may_move(|_| false, &mut site.acting()) {
         match run.moves(&demands, &mut site) {
             Came::On | Came::NoThread => {}
-            Came::BlockEnd => run.end_block(demands.single_block, false),
+            Came::BlockEnd => run.end_block(demands.single_block, locked.next.is_some()),
             Came::Refused(_) => machine.break_off(k),
             Came::Stop(stop) => take(machine, k, stop),
         }
+    }
+    number_blocks(machine, k, sent);
+    while let Some(q) = machine.written.take() {
+        command::notice(machine, Place::Q(q));
     }
     let Some((run, feeder, mut site)) = machine.parts(k) else {
         return;
@@ -186,4 +206,12 @@ fn move_channel(machine: &mut Machine, k: usize) {
         site.axes.release(|mover| mover == Mover::Path);
     }
     site.axes.slow_down(time_s);
+}
+
+/// Transfers that went out since there were so many get the numbers of their blocks.
+fn number_blocks(machine: &mut Machine, k: usize, sent: u64) {
+    let mut transfers = std::mem::take(&mut machine.transfers);
+    let count = usize::try_from(transfers.count() - sent).unwrap_or(0);
+    transfers.number(count, |block| machine.block_number(k, block));
+    machine.transfers = transfers;
 }

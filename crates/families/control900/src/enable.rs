@@ -1,8 +1,10 @@
 //! What holds the loops and lets the axes move: P8700, P8701, P8702, P8891, clamps [002:3752-3767].
 
 use bahn_kernel::AxisUnit;
+use bahn_path::{Direction, PathElement};
 use bahn_system900::{AxisParameter, ChannelParameter, Memory};
 
+use crate::axis_state::AxisPlace;
 use crate::machine::Machine;
 
 /// Absolute axes are where they were at power-off [002:7012-7022].
@@ -51,9 +53,16 @@ pub(crate) fn follow_enables(machine: &mut Machine) {
         if unit.enabled != channel.axes_enabled {
             unit.enabled = channel.axes_enabled;
             unit.servo.set_enabled(channel.axes_enabled);
-            if !channel.axes_enabled {
-                unit.stand(unit.nominal);
+            match channel.axes_enabled {
+                true => unit.go_back(),
+                false => unit.stand(unit.nominal),
             }
+        }
+    }
+    for k in 0..machine.channels.len() {
+        let slope = path_slope_mm_min(machine, k);
+        if let Some(channel) = machine.channels.get_mut(k) {
+            channel.slope_mm_min = slope;
         }
     }
     for channel in machine
@@ -66,21 +75,81 @@ pub(crate) fn follow_enables(machine: &mut Machine) {
     }
 }
 
-/// P8891: a move of a locked axis is due, or is executed [002:4765-4770].
-pub(crate) fn is_locked(machine: &Machine, k: usize) -> bool {
+/// What P8891 holds up of the path of a channel [002:4765-4770].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Locked {
+    /// The block that is executed moves a locked axis.
+    pub now: bool,
+    /// The next one does: its place in the order of execution.
+    pub next: Option<u64>,
+}
+
+/// P8891: moves of locked axes are due.
+pub(crate) fn locked(machine: &Machine, k: usize) -> Locked {
     let Some(channel) = machine.channels.get(k) else {
-        return false;
+        return Locked::default();
     };
-    let bits = machine
+    let lock = machine
         .memory
-        .of_channel(channel.number, ChannelParameter::AxisLock)
+        .of_channel(channel.number, ChannelParameter::AxisLock);
+    let bits = lock.bits().unwrap_or(0);
+    let is_locked = |element: &&PathElement| {
+        let own = machine.places.iter().zip(machine.core.axes.iter());
+        let mut own = own.filter(|(place, _)| usize::from(place.channel) == k);
+        own.any(|(place, unit)| {
+            let way = element.end[unit.axis] - element.start[unit.axis];
+            let direction = if way < 0.0 {
+                Direction::Minus
+            } else {
+                Direction::Plus
+            };
+            let is_moved = element.moves_axis(unit.axis);
+            let by_direction = || is_locked(&machine.memory, place.physical, direction);
+            is_moved && (bits >> unit.index & 1 != 0 || by_direction())
+        })
+    };
+    let next = channel.run.track.path.next_element().filter(is_locked);
+    Locked {
+        now: channel.run.element().filter(is_locked).is_some(),
+        next: next.map(|element| element.sequence),
+    }
+}
+
+/// P12137: a direction of an axis is locked [002:8248-8255].
+pub(crate) fn is_locked(memory: &Memory, physical: u8, direction: Direction) -> bool {
+    let bits = memory
+        .of_axis(physical, AxisParameter::DirectionLock)
         .bits()
         .unwrap_or(0);
-    let Some(element) = channel.run.element().filter(|_| bits != 0) else {
-        return false;
+    let [plus, minus, ..] = bits.to_le_bytes();
+    match direction {
+        Direction::Plus => plus == 1,
+        Direction::Minus => minus == 1,
+    }
+}
+
+/// P12136: how fast an axis may be now, mm/min; infinite without a slope [002:8237-8246].
+pub(crate) fn slope_mm_min(memory: &Memory, place: &AxisPlace) -> f64 {
+    let bits = memory
+        .of_axis(place.physical, AxisParameter::SlopeActs)
+        .bits()
+        .unwrap_or(0);
+    let acting = bits.to_le_bytes().into_iter().zip(place.block.slopes_mm_min);
+    acting
+        .filter(|(byte, _)| *byte == 1)
+        .fold(f64::INFINITY, |least, (_, slope)| least.min(slope))
+}
+
+/// How fast the slopes of the axes that a block moves let the path of a channel be, mm/min.
+pub(crate) fn path_slope_mm_min(machine: &Machine, k: usize) -> f64 {
+    let Some(element) = machine.channels.get(k).and_then(|channel| channel.run.element()) else {
+        return f64::INFINITY;
     };
-    let mut own = machine.core.axes.owned(k);
-    own.any(|unit| bits >> unit.index & 1 != 0 && element.moves_axis(unit.axis))
+    let own = machine.places.iter().zip(machine.core.axes.iter());
+    let moved = own.filter(|(place, unit)| usize::from(place.channel) == k && element.moves_axis(unit.axis));
+    moved.fold(f64::INFINITY, |least, (place, _)| {
+        least.min(slope_mm_min(&machine.memory, place))
+    })
 }
 
 /// P12140, P12141: the nominal position is where the axis is [002:8272-8282].

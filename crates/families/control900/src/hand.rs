@@ -14,8 +14,9 @@ use bahn_path::Direction;
 use bahn_servo::Measured;
 use bahn_system900::{AxisParameter, ChannelParameter, Memory, SpindleBlock};
 
-use crate::axis_state::{AxisPlace, Goal, Hand};
+use crate::axis_state::{AxisPlace, Goal, Hand, Report};
 use crate::channel::Mode;
+use crate::enable::{is_locked, slope_mm_min};
 use crate::machine::Machine;
 
 /// Degrees per minute of one rpm.
@@ -112,7 +113,14 @@ pub(crate) fn position(machine: &mut Machine, physical: u8, parameter: AxisParam
     let value = machine.memory.of_axis(physical, parameter).number();
     let speed = axis_number(&machine.memory, physical, AxisParameter::RelativeSpeed, second);
     let percent = position_percent(machine, physical, second);
-    store_reached(&mut machine.memory, physical, second, 0);
+    report(
+        &mut machine.memory,
+        physical,
+        Report {
+            bits: 0,
+            ..Report::reached(second)
+        },
+    );
     let axes = machine
         .places
         .iter()
@@ -128,7 +136,7 @@ pub(crate) fn position(machine: &mut Machine, physical: u8, parameter: AxisParam
             Goal {
                 position,
                 feed_mm_min: speed * percent / 100.0,
-                reports: Some(second),
+                reports: Some(Report::reached(second)),
             }
         });
     }
@@ -197,7 +205,7 @@ pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
             .iter()
             .zip(&mut machine.hands)
             .zip(machine.core.axes.iter_mut());
-        for ((place, hand), unit) in axes.filter(|(_, unit)| unit.channel == k) {
+        for ((place, hand), unit) in axes.filter(|((place, _), _)| usize::from(place.channel) == k) {
             if !is_hand {
                 hand.key = None;
             }
@@ -305,28 +313,31 @@ fn lead(place: &AxisPlace, hand: &mut Hand, unit: &mut AxisUnit, feed: f64, now:
     if matches!(unit.mover, Mover::Reference) {
         return unit.come_to_rest(now.time_s);
     }
+    let feed_max = slope_mm_min(memory, place);
+    let key = hand
+        .key
+        .filter(|(direction, _)| !is_locked(memory, place.physical, *direction));
+    let key = key.map(|(direction, feed)| (direction, feed.min(feed_max)));
     match hand.goal {
         Some(goal) if unit.can_be_driven() && matches!(unit.mover, Mover::None | Mover::Positioning) => {
             unit.mover = Mover::Positioning;
-            unit.drive(now.time_s, Aim::Position(goal.position), goal.feed_mm_min);
+            let feed = goal.feed_mm_min.min(feed_max);
+            unit.drive(now.time_s, Aim::Position(goal.position), feed);
             if unit.ptp.is_at(goal.position) && unit.servo.in_position() {
                 (hand.goal, unit.mover) = (None, Mover::None);
-                if let Some(which) = goal.reports {
-                    store_reached(memory, place.physical, which, 1);
+                if let Some(reached) = goal.reports {
+                    report(memory, place.physical, reached);
                 }
             }
         }
         Some(_) => {}
         None if unit.mover == Mover::Positioning => unit.come_to_rest(now.time_s),
         None => {
-            let wheel = hand
-                .wheel
-                .map(|(_, _, target)| target)
-                .filter(|_| hand.key.is_none());
+            let wheel = hand.wheel.map(|(_, _, target)| target).filter(|_| key.is_none());
             let wheel = wheel.filter(|target| *target != unit.nominal || unit.mover == Mover::Manual);
-            if hand.key.is_some() || wheel.is_some() || unit.mover == Mover::Manual {
+            if key.is_some() || wheel.is_some() || unit.mover == Mover::Manual {
                 let wanted = HandMove {
-                    key: hand.key,
+                    key,
                     wheel,
                     ..HandMove::default()
                 };
@@ -374,16 +385,21 @@ fn take_mark(place: &AxisPlace, hand: &Hand, unit: &mut AxisUnit) -> bool {
     mark.is_some()
 }
 
-/// P12191, P12192: a position is reached, or not.
-fn store_reached(memory: &mut Memory, physical: u8, which: u32, reached: i32) {
-    let place = Memory::axis_place(physical, AxisParameter::Reached).and_then(|place| place.q());
+/// A position is reached, or not.
+pub(crate) fn report(memory: &mut Memory, physical: u8, report: Report) {
+    let place = Memory::axis_place(physical, report.parameter).and_then(|place| place.q());
     if let Some(place) = place {
-        memory.store_bits(bahn_system900::Place::Q(place + which), reached);
+        memory.store_bits(bahn_system900::Place::Q(place + report.after), report.bits);
     }
 }
 
 /// The number of a parameter of an axis, or of one after it.
-fn axis_number(memory: &Memory, physical: u8, parameter: AxisParameter, after: u32) -> Option<f64> {
+pub(crate) fn axis_number(
+    memory: &Memory,
+    physical: u8,
+    parameter: AxisParameter,
+    after: u32,
+) -> Option<f64> {
     let place = Memory::axis_place(physical, parameter)?.q()?;
     memory.system_cell(place + after).number()
 }

@@ -2,14 +2,14 @@
 
 use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
 use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
-use bahn_path::Position;
+use bahn_path::{BlockRef, Position};
 use bahn_system900::{ChannelParameter, Memory};
 
 use crate::answers::Answers;
 use crate::axis_state::{AxisPlace, Hand, Watch};
-use crate::channel::{Channel, Site};
+use crate::channel::{Channel, Site, Written};
 use crate::message::{Kind, Message, Messages};
-use crate::setup::Setup;
+use crate::setup::{Language, Setup};
 use crate::transfer::Transfers;
 use crate::units;
 
@@ -33,6 +33,8 @@ pub(crate) struct Machine {
     pub hands: Vec<Hand>,
     pub messages: Messages,
     pub transfers: Transfers,
+    pub written: Written,
+    pub language: Option<Language>,
     pub answers: Answers,
     pub now_us: u64,
     pub plc_us: u64,
@@ -67,6 +69,8 @@ impl Machine {
             places,
             messages: Messages::default(),
             transfers: Transfers::default(),
+            written: Written::default(),
+            language: setup.language,
             answers: Answers::new(setup.answers),
             now_us: 0,
             plc_us: u64::from(setup.plc_us.max(1)),
@@ -95,7 +99,7 @@ impl Machine {
             program_rapid: false,
             axis_keys: PerPlcAxis::splat(None),
             wheel_mm: PerPlcAxis::splat(0.0),
-            rapid_limit_mm_min: f64::INFINITY,
+            rapid_limit_mm_min: channel.slope_mm_min,
         })
     }
 
@@ -110,21 +114,33 @@ impl Machine {
             spindle: &mut channel.spindle,
             m: &channel.m,
             waits_for_m: &mut channel.waits_for_m,
+            changes_tool: &mut channel.changes_tool,
             branch: &mut channel.branch,
             transfers: &mut self.transfers,
             memory: &mut self.memory,
+            written: &mut self.written,
             at: None,
             now,
         };
         Some((&mut channel.run, channel.feeder.as_mut(), site))
     }
 
+    /// Number and block of what starts in a channel, or runs: P8800 and P8801, or those of an emergency program.
+    pub fn start_of(&self, k: usize) -> [i64; 2] {
+        let number = k as u8 + 1;
+        let first = match self.channels.get(k).and_then(|channel| channel.runs) {
+            Some(which) => (ChannelParameter::EmergencyProgram, 2 * which as u32),
+            None => (ChannelParameter::Program, 0),
+        };
+        [0, 1].map(|at| {
+            let place = self.memory.channel_place_at(number, first.0, first.1 + at);
+            place.and_then(|place| self.memory.at(place).whole()).unwrap_or(0)
+        })
+    }
+
     /// Reads ahead for a channel, outside the cycle; begins a run that is to begin.
     pub fn prepare(&mut self, k: usize) {
-        let start_block = self
-            .memory
-            .of_channel(k as u8 + 1, ChannelParameter::StartBlock)
-            .whole();
+        let [_, start_block] = self.start_of(k);
         let now_us = self.now_us;
         let Some((run, _, mut site)) = self.parts(k) else {
             return;
@@ -133,14 +149,51 @@ impl Machine {
         if run.takes_begin(|| site.axes.rest()) {
             run.begin();
             run.set_off(&site.acting());
-            self.begin(k, start_block.unwrap_or(0));
+            self.begin(k, start_block);
         }
-        let Some((run, Some(feeder), mut site)) = self.parts(k) else {
-            return;
-        };
-        if run.progress().is_on_its_way() {
+        self.give_memory(k);
+        if let Some((run, Some(feeder), mut site)) = self.parts(k)
+            && run.progress().is_on_its_way()
+        {
             let allowed = run.allowed(now_us);
             run.prepare(feeder, allowed, Position::ZERO, &site.acting(), |_, _| {});
+        }
+        self.take_memory(k);
+    }
+
+    /// The number of a block of the program of a channel, as programs write it.
+    pub fn block_number(&self, k: usize, block: BlockRef) -> u32 {
+        let feeder = self.channels.get(k).and_then(|channel| channel.feeder.as_ref());
+        match (self.language, feeder) {
+            (Some(language), Some(feeder)) => (language.number)(feeder.reader(), block),
+            _ => block.block,
+        }
+    }
+
+    /// A program that is read has the parameters meanwhile.
+    pub fn give_memory(&mut self, k: usize) {
+        let reader = self
+            .channels
+            .get_mut(k)
+            .and_then(|channel| channel.feeder.as_mut());
+        if let (Some(language), Some(feeder)) = (self.language, reader) {
+            let memory = std::mem::replace(&mut self.memory, Memory::none());
+            if let Some(memory) = (language.give)(feeder.reader_mut(), memory) {
+                self.memory = memory;
+            }
+        }
+    }
+
+    /// The parameters are back.
+    pub fn take_memory(&mut self, k: usize) {
+        let reader = self
+            .channels
+            .get_mut(k)
+            .and_then(|channel| channel.feeder.as_mut());
+        if let (Some(language), Some(feeder)) = (self.language, reader)
+            && let Some(memory) = (language.take)(feeder.reader_mut())
+        {
+            self.memory = memory;
         }
     }
 
@@ -158,15 +211,18 @@ impl Machine {
             return;
         };
         (channel.branch, channel.jump, channel.waits_for_m) = (None, None, false);
-        let Some(program) = &channel.program else {
+        let Some(program) = channel.starting() else {
             return;
         };
-        let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
-        feeder.reader_mut().relocate(&here);
-        if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
-            feeder.reader_mut().goto(block);
+        channel.feeder = Some(Feeder::new(program.boxed(), channel.chain.clone(), within));
+        self.give_memory(k);
+        if let Some((_, Some(feeder), _)) = self.parts(k) {
+            feeder.reader_mut().relocate(&here);
+            if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
+                feeder.reader_mut().goto(block);
+            }
         }
-        channel.feeder = Some(feeder);
+        self.take_memory(k);
     }
 
     /// A message comes, and does what its kind says.
@@ -218,12 +274,8 @@ impl Machine {
             return;
         };
         if channel.run.progress().is_active() {
-            let (number, block) = (channel.number, i64::from(channel.block().block));
-            let program = self
-                .memory
-                .of_channel(number, ChannelParameter::Program)
-                .whole()
-                .unwrap_or(0);
+            let (number, block) = (channel.number, i64::from(self.block_number(k, channel.block())));
+            let [program, _] = self.start_of(k);
             for (parameter, value) in [
                 (ChannelParameter::AbortProgram, program),
                 (ChannelParameter::AbortBlock, block),
@@ -255,6 +307,8 @@ impl Machine {
 
     /// All axes of a channel are referenced.
     pub(crate) fn is_referenced(&self, k: usize) -> bool {
-        self.core.axes.owned(k).all(|unit| unit.referenced)
+        let own = self.places.iter().zip(self.core.axes.iter());
+        let mut own = own.filter(|(place, _)| usize::from(place.channel) == k);
+        own.all(|(_, unit)| unit.referenced)
     }
 }

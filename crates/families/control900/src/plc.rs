@@ -26,6 +26,14 @@ pub(crate) fn answer(machine: &mut Machine) {
         if which.start && starts & bit(number) != 0 {
             answer_start(machine, number);
         }
+        let changes = machine
+            .channels
+            .get_mut(k)
+            .map(|channel| std::mem::take(&mut channel.changes_tool));
+        if which.tools && changes == Some(true) {
+            plc(machine, number, ChannelParameter::StoreTool, 1);
+            plc(machine, number, ChannelParameter::TakeTool, 2);
+        }
         let waits = machine.channels.get(k).is_some_and(|channel| channel.waits_for_m);
         if which.m && waits {
             plc(machine, number, ChannelParameter::BlockRelease, 1);

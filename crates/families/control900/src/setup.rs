@@ -1,5 +1,9 @@
 //! What a control is told beside its parameters.
 
+use bahn_path::{BlockRef, Position};
+use bahn_reader::Reader;
+use bahn_system900::Memory;
+
 /// What answers in the place of a PLC, one PLC cycle after its cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StandardAnswers {
@@ -13,6 +17,12 @@ pub struct StandardAnswers {
     pub m: bool,
     /// After M6 the tool is changed: P8047 and P8045.
     pub tools: bool,
+}
+
+impl Default for StandardAnswers {
+    fn default() -> StandardAnswers {
+        StandardAnswers::ALL
+    }
 }
 
 impl StandardAnswers {
@@ -34,13 +44,29 @@ impl StandardAnswers {
     };
 }
 
+/// A language of programs that read and write parameters: while a program is read it has all of them, and gives them back.
+#[derive(Clone, Copy, Debug)]
+pub struct Language {
+    /// Gives a program the parameters; they come back when it is of another language.
+    pub give: fn(&mut dyn Reader, Memory) -> Option<Memory>,
+    /// Takes them back; `None` when it has none.
+    pub take: fn(&mut dyn Reader) -> Option<Memory>,
+    /// A program goes back before the block of a place in the order of execution, and on at a block of the same program, from
+    /// where the axes stand.
+    pub branch: fn(&mut dyn Reader, u64, u32, &Position),
+    /// The number of a block as programs write it.
+    pub number: fn(&dyn Reader, BlockRef) -> u32,
+}
+
 /// What a control is told beside its parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setup {
     /// What answers in the place of a PLC.
     pub answers: StandardAnswers,
     /// The cycle of the PLC, µs.
     pub plc_us: u32,
+    /// The language of its programs; without one they see no parameters.
+    pub language: Option<Language>,
 }
 
 impl Default for Setup {
@@ -49,6 +75,7 @@ impl Default for Setup {
         Setup {
             answers: StandardAnswers::ALL,
             plc_us: 10_000,
+            language: None,
         }
     }
 }

@@ -45,6 +45,18 @@ pub(crate) fn show(machine: &mut Machine) {
 
 fn show_channel(machine: &mut Machine, k: usize) {
     let referenced = machine.is_referenced(k);
+    let [program, _] = machine.start_of(k);
+    let executed = machine.channels.get(k).and_then(|channel| channel.run.element());
+    let executed = executed.map(|element| element.block);
+    let shown = machine.channels.get(k).and_then(|channel| channel.shown);
+    let block = match (executed, shown) {
+        (Some(executed), Some((shown, number))) if executed == shown => number,
+        (Some(executed), _) => machine.block_number(k, executed),
+        (None, _) => 0,
+    };
+    if let Some(channel) = machine.channels.get_mut(k) {
+        channel.shown = executed.map(|executed| (executed, block));
+    }
     let Some(channel) = machine.channels.get(k) else {
         return;
     };
@@ -66,12 +78,8 @@ fn show_channel(machine: &mut Machine, k: usize) {
     let Some(element) = channel.run.element() else {
         return;
     };
-    let program = memory
-        .of_channel(number, ChannelParameter::Program)
-        .whole()
-        .unwrap_or(0);
     memory.set_channel(number, ChannelParameter::ActualProgram, program);
-    memory.set_channel(number, ChannelParameter::ActualBlock, element.block.block.into());
+    memory.set_channel(number, ChannelParameter::ActualBlock, block.into());
     let interpolation = match (&element.curve, element.feed) {
         (Curve::Arc(arc), _) if arc.sweep_deg < 0.0 => 2,
         (Curve::Arc(_), _) => 3,
@@ -87,9 +95,10 @@ fn show_channel(machine: &mut Machine, k: usize) {
     }
     // Where the block leads the axes.
     let decimals = memory.position_decimals(number);
-    for (place, unit) in machine.places.iter().zip(machine.core.axes.iter()) {
+    let own = machine.places.iter().zip(machine.core.axes.iter());
+    for (place, unit) in own.filter(|(place, _)| usize::from(place.channel) == k) {
         let end = element.end[unit.axis];
-        if usize::from(place.channel) == k && !unit.is_plc_axis() && end.is_finite() {
+        if !unit.is_plc_axis() && end.is_finite() {
             show_programmed(memory, place, end, decimals);
         }
     }

@@ -5,6 +5,8 @@
 
 use std::collections::VecDeque;
 
+use bahn_path::BlockRef;
+
 /// Transfers that are kept until somebody takes them; the oldest one goes first.
 const KEPT: usize = 4096;
 
@@ -32,8 +34,10 @@ pub struct Transfer {
     pub stop: bool,
     /// The acknowledgement branches.
     pub branch: bool,
-    /// The block.
+    /// The number of the block.
     pub block: u32,
+    /// Where it stands in the programs.
+    pub(crate) at: BlockRef,
     /// When it was acknowledged, µs; `None` while it is not, and for those that need not be.
     pub ack_us: Option<u64>,
     /// The branch was taken.
@@ -63,6 +67,18 @@ impl Transfers {
             self.dropped += 1;
         }
         self.list.push_back(transfer);
+    }
+
+    /// The last ones of a channel, whose blocks have no number yet, get it.
+    pub fn number(&mut self, count: usize, number: impl Fn(BlockRef) -> u32) {
+        for transfer in self.list.iter_mut().rev().take(count) {
+            transfer.block = number(transfer.at);
+        }
+    }
+
+    /// How many there were since power-on.
+    pub fn count(&self) -> u64 {
+        self.list.len() as u64 + self.dropped
     }
 
     /// Those of a channel that wait are acknowledged.

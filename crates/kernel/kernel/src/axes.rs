@@ -34,9 +34,13 @@ impl Axes {
 
     /// Those of a channel.
     pub fn of(&mut self, channel: usize) -> OwnAxes<'_> {
+        let is_own = |unit: &AxisUnit| unit.channel == channel;
+        let first = self.units.iter().position(is_own).unwrap_or(0);
+        let end = self.units.iter().rposition(is_own).map_or(first, |last| last + 1);
         OwnAxes {
             units: &mut self.units,
             channel,
+            span: (first, end),
         }
     }
 
@@ -206,19 +210,25 @@ pub fn units(
 pub struct OwnAxes<'a> {
     units: &'a mut [AxisUnit],
     channel: usize,
+    /// All of the channel stand from here on, before there: most of the others need not be looked at.
+    span: (usize, usize),
 }
 
 impl OwnAxes<'_> {
     /// Those of the channel.
     pub fn iter(&self) -> impl Iterator<Item = &AxisUnit> + Clone {
         let channel = self.channel;
-        self.units.iter().filter(move |unit| unit.channel == channel)
+        let (first, end) = self.span;
+        let span = self.units.get(first..end).unwrap_or_default();
+        span.iter().filter(move |unit| unit.channel == channel)
     }
 
     /// Those of the channel, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut AxisUnit> {
         let channel = self.channel;
-        self.units.iter_mut().filter(move |unit| unit.channel == channel)
+        let (first, end) = self.span;
+        let span = self.units.get_mut(first..end).unwrap_or_default();
+        span.iter_mut().filter(move |unit| unit.channel == channel)
     }
 
     /// The places of its axes among all.

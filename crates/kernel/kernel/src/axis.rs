@@ -85,6 +85,8 @@ pub struct Coupling {
     pub gantry: Gantry,
     /// The relation of the two at switch-on was taken.
     pub switched_on: bool,
+    /// The slave shows its own nominal position, not that of its master.
+    pub shows_own: bool,
 }
 
 /// An axis of the machine with its position loop, and what the control knows of it.

@@ -35,6 +35,7 @@ pub fn couple(mut axes: Vec<AxisUnit>, timing: Timing) -> Vec<AxisUnit> {
             master,
             gantry,
             switched_on: false,
+            shows_own: false,
         });
     }
     axes
@@ -72,7 +73,11 @@ pub fn command(axes: &mut [AxisUnit]) {
         let wanted = master.nominal + master.way_back.beside();
         coupling.gantry.command(wanted, &master.servo, &mut slave.servo);
         // The nominal display of the slave is the master's nominal value [000:4519-4539].
-        slave.follow_master(master.nominal, master.speed);
+        let shown = match coupling.shows_own {
+            true => coupling.gantry.wanted(master.nominal),
+            false => master.nominal,
+        };
+        slave.follow_master(shown, master.speed);
     }
 }
 

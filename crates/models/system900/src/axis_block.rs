@@ -47,12 +47,16 @@ AxisParameter {
     Output = 29,
     /// P12030: software limit, positive; negative follows.
     Limits = 30,
+    /// P12032: emergency position, absolute and relative; basic position, absolute and relative; fixed position.
+    EmergencyPosition = 32,
     /// P12040: position of the reference point.
     ReferenceOffset = 40,
     /// P12041: one turn.
     Modulo = 41,
     /// P12044: logic of the reference drive.
     ReferenceLogic = 44,
+    /// P12047: axes that stop when this one goes to its emergency position.
+    StopsAxes = 47,
     /// P12050: feed forward, %.
     FeedForward = 50,
     /// P12052: backlash.
@@ -75,6 +79,14 @@ AxisParameter {
     Reference = 130,
     /// P12134: turns as a spindle.
     Turn = 134,
+    /// P12123: speed to the fixed position.
+    FixedSpeed = 123,
+    /// P12128: override of basic and fixed position.
+    FixedOverride = 128,
+    /// P12132: goes to the emergency position, or to the basic one.
+    GoEmergency = 132,
+    /// P12133: goes to the fixed position.
+    GoFixed = 133,
     /// P12124: speed as a spindle.
     TurnSpeed = 124,
     /// P12136: slopes act.
@@ -117,6 +129,10 @@ AxisParameter {
     AxisSpeed = 170,
     /// P12180: reference point.
     ReferenceState = 180,
+    /// P12182: the emergency position is reached, or the basic one.
+    EmergencyReached = 182,
+    /// P12183: the fixed position is reached.
+    FixedReached = 183,
     /// P12185: at a software limit.
     AtLimit = 185,
     /// P12186: a nominal value is given.

@@ -15,6 +15,22 @@ ChannelParameter {
     DeltaPositions = 7096,
     /// P7128: display shifts.
     DisplayShifts = 7128,
+    /// P8040: T is not read.
+    ToolLock = 8040,
+    /// P8045: a tool is taken into the spindle.
+    TakeTool = 8045,
+    /// P8046: the offset block is loaded.
+    OffsetCommand = 8046,
+    /// P8047: the spindle block goes back to the array.
+    StoreTool = 8047,
+    /// P8050: the tool for the PLC, its parameters follow.
+    PlcTool = 8050,
+    /// P8100: the tool in the spindle.
+    SpindleTool = 8100,
+    /// P8150: the tool that the path is computed with.
+    OffsetTool = 8150,
+    /// P8200: the tool of the block that is executed.
+    RealTimeTool = 8200,
     /// P8500: message of the system, ends all channels.
     SystemMessage = 8500,
     /// P8501: message of high priority, ends the channel.
@@ -27,6 +43,8 @@ ChannelParameter {
     MessageAxis = 8504,
     /// P8508: acknowledges the messages of the control [002:939-948].
     Acknowledge = 8508,
+    /// P8510: locks in AUTO.
+    AutomaticLocks = 8510,
     /// P8550: number of the channel.
     ChannelNumber = 8550,
     /// P8551: number of its axes.
@@ -67,6 +85,14 @@ ChannelParameter {
     BlockRelease = 8706,
     /// P8709: the PLC says that all reference points are taken [002:3810-3816].
     Referenced = 8709,
+    /// P8710: calls emergency program 1; those of the others follow [002:3856-3882].
+    Emergency = 8710,
+    /// P8711: calls emergency program 2.
+    Emergency2 = 8711,
+    /// P8712: calls emergency program 3.
+    Emergency3 = 8712,
+    /// P8713: calls emergency program 4.
+    Emergency4 = 8713,
     /// P8750: how axes are moved by hand [002:3983-3993].
     ManualMode = 8750,
     /// P8751: the logical axis that is moved by hand.
@@ -103,6 +129,8 @@ ChannelParameter {
     RapidFeed = 8816,
     /// P8818: programmed feeds, %.
     FeedPercent = 8818,
+    /// P8820: emergency program 1 and its block; those of the others follow [002:4303-4314].
+    EmergencyProgram = 8820,
     /// P8865: the override of the path.
     PathOverride = 8865,
     /// P8866: the override of relative positions.

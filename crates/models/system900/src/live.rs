@@ -19,6 +19,8 @@ pub enum Meaning {
     OfAxis(u8, AxisParameter),
     /// An override, from 1 on: how its potentiometer stands.
     Override(u8),
+    /// A switch of locks, or what it locks.
+    Locks,
     /// Nothing that runs a routine.
     Nothing,
 }
@@ -38,6 +40,9 @@ impl Memory {
         if let Some(number) = crate::shared_block::override_at(number) {
             return Meaning::Override(number);
         }
+        if crate::locks::is_switch(number) {
+            return Meaning::Locks;
+        }
         let of_channel = (1..=self.channels()).find_map(|channel| {
             let fixed = self.descriptor(channel).fixed()?;
             let offset = number.checked_sub(fixed).filter(|offset| *offset < FIXED_COUNT)?;
@@ -47,6 +52,32 @@ impl Memory {
             ))
         });
         of_channel.unwrap_or(Meaning::Nothing)
+    }
+
+    /// A write runs a routine of the control: a program that writes it does so where the path is, not in the look-ahead.
+    pub fn runs_routine(&self, place: Place) -> bool {
+        match self.meaning(place) {
+            Meaning::OfAxis(_, parameter) => matches!(
+                parameter,
+                AxisParameter::GoRelative
+                    | AxisParameter::GoAbsolute
+                    | AxisParameter::GoEmergency
+                    | AxisParameter::GoFixed
+                    | AxisParameter::Reference
+            ),
+            Meaning::OfChannel(_, parameter) => matches!(
+                parameter,
+                ChannelParameter::SystemMessage
+                    | ChannelParameter::HighMessage
+                    | ChannelParameter::LowMessage
+                    | ChannelParameter::DisplayMessage
+                    | ChannelParameter::TakeTool
+                    | ChannelParameter::OffsetCommand
+                    | ChannelParameter::StoreTool
+            ),
+            Meaning::Override(_) | Meaning::Locks => true,
+            Meaning::Nothing => false,
+        }
     }
 
     /// A memory without any parameter, where another one stood: it takes no room.
@@ -117,6 +148,17 @@ impl Memory {
         let status = before.with_decimals(decimals).loaded(true);
         let mantissa = counted.round() as i32;
         self.put(place, Cell { mantissa, status });
+    }
+
+    /// Stores a number as a program gives it: decimals are raised to what it needs, at most nine [002:364].
+    pub fn store_exact(&mut self, place: Place, number: Option<f64>) {
+        let least = self.at(place).status.decimals();
+        let needs = |decimals: &u8| {
+            let counted = number.unwrap_or(0.0) * scale(*decimals);
+            (counted - counted.round()).abs() < 1e-6 * counted.abs().max(1.0)
+        };
+        let decimals = (least..=DECIMALS_MAX).find(needs).unwrap_or(DECIMALS_MAX);
+        self.store(place, number, decimals);
     }
 
     /// Stores bits as they are.

@@ -3,7 +3,7 @@
 use crate::array::Cell;
 use crate::memory::{Memory, Place};
 use crate::numbered::parameters;
-use crate::numbers::{COUPLING_BLOCK, COUPLINGS_MAX, SHARED};
+use crate::numbers::{COUPLING_BLOCK, COUPLINGS_MAX, SHARED, SPINDLE_WORDS};
 
 parameters! {
 /// A parameter that all channels share.
@@ -297,6 +297,18 @@ impl Memory {
             position_deg: of(12),
             tolerance_percent: Some(of(13)).filter(|percent| *percent > 0.0),
         })
+    }
+
+    /// A programmed speed, rpm, goes to the spindle that the descriptor of the channel gives to the word S [002:858-881]; to none
+    /// where it names none.
+    pub fn program_speed(&mut self, channel: u8, rpm: f64) {
+        let number = self.descriptor(channel).entry(SPINDLE_WORDS).whole();
+        let number = number.and_then(|number| u32::try_from(number).ok());
+        if let Some(number) = number.filter(|number| (1..=COUPLINGS_MAX).contains(number)) {
+            let at = (number - 1) * COUPLING_BLOCK + 8;
+            let place = SharedParameter::Spindle.number() - SHARED.0 + SHARED.1 + at;
+            self.store_exact(Place::Q(place), Some(rpm));
+        }
     }
 
     /// Stores the speed of a spindle, rpm, and whether it is reached: no 0, yes 1, at its position 2.

@@ -81,6 +81,11 @@ impl Layout {
         u64::from(self.records) * u64::from(self.length)
     }
 
+    /// The first parameter of a record.
+    pub fn begin(&self, record: u32) -> Option<u32> {
+        record.checked_mul(self.length)?.checked_add(self.first)
+    }
+
     fn record(&self, memory: &Memory, channel: u8, record: u32, p: u32) -> Tool {
         let at = |offset: u32| {
             let name = Name::P(channel, p.checked_add(offset)?);

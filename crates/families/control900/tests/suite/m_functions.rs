@@ -1,10 +1,10 @@
 //! M functions on their way to the PLC [002:5455-5517].
 
 use bahn_control900::{StandardAnswers, When};
-use bahn_path::{At, Axis, Synchronisation};
+use bahn_path::{At, Axis, Function, Synchronisation};
 
-use crate::list::Line;
-use crate::rig::Rig;
+use crate::support::Rig;
+use crate::support::list::Line;
 
 /// The example of the manual: M7 branches, M6 goes out before the path with stop, M5 after it with stop, M4 before it,
 /// flying.
@@ -94,4 +94,91 @@ fn a_definition_takes_effect_with_the_mode() {
     rig.start(1, &lines);
     rig.until_end(1);
     assert_eq!(rig.control.transfers().count(), 1);
+}
+
+/// M7.50 goes out before the way to X 80. Confirmed at X 60, the way is given up within its ramp, the measured positions are
+/// written, and the program goes on at N50.
+#[test]
+fn a_confirmed_branch_gives_the_way_up() {
+    let mut rig = Rig::on(EXAMPLE);
+    let branch = Function::Branch { m: 7, target: 50 };
+    let x = |x| Line::to(&[(Axis::X, x)], 3000.0);
+    let lines = [
+        x(40.0),
+        x(80.0).says(branch, At::Start, Synchronisation::MvsSvs),
+        x(90.0),
+        x(95.0),
+        Line::to(&[(Axis::Y, 10.0)], 3000.0),
+    ];
+    let mut other = rig.clone();
+    rig.start(1, &lines);
+    rig.until(|rig| rig.exact("P12151") > 60.0);
+    rig.plc("P8706", "1");
+    rig.until_end(1);
+    // 50 mm/s brake on 3.1 mm.
+    let stopped = rig.read("P12151");
+    assert!((63.1..=63.6).contains(&stopped), "{stopped}");
+    assert_eq!((rig.read("P12351"), rig.read("P12153")), (10.0, stopped));
+    let transfer = *rig.control.transfers().next().unwrap();
+    assert_eq!(
+        (transfer.m, transfer.when, transfer.branch, transfer.taken),
+        (7, When::Before, true, true)
+    );
+    assert!(transfer.ack_us.is_some());
+
+    // Without the confirmation, which no standard answer gives, the block is executed to its end.
+    other.start(1, &lines);
+    other.until_end(1);
+    assert_eq!((other.read("P12151"), other.read("P12351")), (95.0, 10.0));
+    let transfer = *other.control.transfers().next().unwrap();
+    assert_eq!(
+        (transfer.branch, transfer.taken, transfer.ack_us),
+        (true, false, None)
+    );
+}
+
+/// A write on the path is done when the path comes there, with all its decimals; it may run a routine: P12312 positions axis 2.
+#[test]
+fn a_write_on_the_path_is_done_there() {
+    let mut rig = Rig::on("");
+    let write = |q, value| Function::Write {
+        q,
+        value: Some(value),
+    };
+    let lines = [
+        Line::to(&[(Axis::X, 40.0)], 3000.0),
+        Line::to(&[(Axis::X, 80.0)], 3000.0)
+            .says(write(10_050, 1.23456), At::Start, Synchronisation::Mos)
+            .says(write(2312, 7.5), At::Start, Synchronisation::Mos),
+    ];
+    rig.start(1, &lines);
+    rig.until(|rig| rig.exact("P12151") > 39.0);
+    assert!(rig.read("P50").is_nan());
+    rig.until(|rig| rig.exact("P12151") > 41.0);
+    assert_eq!(rig.read("P50"), 1.23456);
+    rig.until_end(1);
+    rig.until(|rig| rig.read("P12392") == 1.0);
+    assert_eq!(rig.read("P12351"), 7.5);
+}
+
+/// At M6 the standard answers store the tool of the spindle, group 3, and take that of the real-time block, group 2: P8047:1,
+/// then P8045:2 [002:1776-1790].
+#[test]
+fn the_standard_answer_changes_the_tool() {
+    let tools = "q104: 30000\nq105: 1000\nq3: 40000\nq175: 20000\nq176: 4\nq178: 20\n\
+        P20040: 3\nP20041: 1\nP8100: 3\nP8101: 1\nP8110: 5.5\nP8200: 2\nP8210: 8\nP8040: 1\n";
+    let mut rig = Rig::on(&format!("{EXAMPLE}{tools}"));
+    rig.start(1, &with(6, At::Start, Synchronisation::MvsSvs));
+    rig.until_end(1);
+    // The radius of the old one is in its record, that of the new one in the spindle; T is read again.
+    let after = ["P20050", "P8100", "P8110", "P8040"].map(|name| rig.read(name));
+    assert_eq!(after, [5.5, 2.0, 8.0, 0.0]);
+}
+
+/// P8690 sends an M function by hand.
+#[test]
+fn an_m_function_goes_out_by_hand() {
+    let mut rig = Rig::on(EXAMPLE);
+    rig.operator("P8690", "4");
+    assert_eq!(rig.control.transfers().next().map(|transfer| transfer.m), Some(4));
 }

@@ -2,7 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that panics fails its test")]
 
-mod list;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod axes;
+mod by_hand;
+mod couplings;
 mod m_functions;
+mod monitors;
 mod programs;
-mod rig;

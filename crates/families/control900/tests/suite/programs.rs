@@ -3,8 +3,8 @@
 use bahn_control900::{Mode, StandardAnswers};
 use bahn_path::Axis;
 
-use crate::list::Line;
-use crate::rig::Rig;
+use crate::support::Rig;
+use crate::support::list::{Line, Lines};
 
 /// X to 100 and Y to 50, then both back to 10 and 20.
 fn two_lines() -> [Line; 2] {
@@ -202,4 +202,35 @@ fn a_clone_goes_on_alike() {
         assert_eq!(rig.exact("P12150").to_bits(), other.exact("P12150").to_bits());
         assert_eq!(rig.exact("P12160").to_bits(), other.exact("P12160").to_bits());
     }
+}
+
+/// Emergency program 1 interrupts the one that runs, whose place is kept, and is started with its block P8821; the mode AUTO
+/// stays, P8710 is 0 again [002:3856-3873].
+#[test]
+fn an_emergency_program_interrupts() {
+    let mut rig = Rig::on("");
+    let away = [
+        Line::to(&[(Axis::Y, 99.0)], 3000.0),
+        Line::to(&[(Axis::Y, -15.0)], 3000.0),
+    ];
+    rig.control.set_emergency_program(1, 1, Some(Lines::boxed(&away)));
+    rig.operator("P8820", "99");
+    rig.operator("P8821", "20");
+    rig.start(1, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
+    rig.until(|rig| rig.read("P12151") > 50.0);
+    rig.plc("P8710", "1");
+    rig.until(|rig| rig.read("P8900") == 99.0);
+    assert_eq!(
+        (rig.read("P8802"), rig.read("P8710"), rig.read("P8703")),
+        (1000.0, 0.0, 2.0)
+    );
+    rig.until_end(1);
+    assert_eq!(rig.read("P12351"), -15.0);
+    let x = rig.read("P12151");
+    assert!((50.0..60.0).contains(&x), "{x}");
+    // The next start is that of P8800 again.
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8685") == 2.0);
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P8900")), (300.0, 1000.0));
 }

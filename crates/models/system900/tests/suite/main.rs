@@ -7,6 +7,7 @@
 )]
 
 mod checks;
+mod control;
 mod files;
 mod laws;
 mod layout;

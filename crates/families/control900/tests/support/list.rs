@@ -16,7 +16,7 @@ pub struct Line {
     pub to: Vec<(Axis, f64)>,
     /// mm/min; rapid without.
     pub feed: Option<f64>,
-    pub functions: Vec<(u16, At, Synchronisation)>,
+    pub functions: Vec<(Function, At, Synchronisation)>,
 }
 
 impl Line {
@@ -30,8 +30,13 @@ impl Line {
     }
 
     /// With a function.
-    pub fn with(mut self, m: u16, at: At, how: Synchronisation) -> Line {
-        self.functions.push((m, at, how));
+    pub fn with(self, m: u16, at: At, how: Synchronisation) -> Line {
+        self.says(Function::M(m), at, how)
+    }
+
+    /// With a function that is none of M.
+    pub fn says(mut self, function: Function, at: At, how: Synchronisation) -> Line {
+        self.functions.push((function, at, how));
         self
     }
 }
@@ -83,7 +88,7 @@ impl ElementSource for Lines {
         let functions: Vec<_> = line
             .functions
             .iter()
-            .map(|(m, at, how)| TechnologyFunction::new(Function::M(*m), *at, *how))
+            .map(|(function, at, how)| TechnologyFunction::new(function.clone(), *at, *how))
             .collect();
         element.functions = (!functions.is_empty()).then(|| functions.into());
         Step::Element(element)
