@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-
 use crate::ReportError;
 use crate::record::Report;
 use bahn_text::printable;

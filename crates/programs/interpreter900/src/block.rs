@@ -3,12 +3,11 @@
 //! Decision: A value that a cleared parameter is to give is a fault of the block: no axis goes to what nobody has said
 
 use bahn_din::system900::{self, Block, Condition, Relation, Word, WordKind, g_function};
-use bahn_path::{Axis, BlockRef};
+use bahn_path::{Axis, BlockRef, Function};
 use bahn_system900::{Memory, Name, PathParameter, Value};
 
 use crate::frame::Frame;
 use crate::modal::{Interpolation, Rotation};
-use crate::orders::Order;
 use crate::refusal::Refusal;
 use crate::run::{ChannelAxes, Run, Said};
 use crate::texts::Texts;
@@ -55,8 +54,8 @@ impl Work<'_> {
         {
             return self.jump(condition);
         }
-        let synchronises = self.write_parameters(block)?;
         let mut said = Said::default();
+        let synchronises = self.write_parameters(block, &mut said)?;
         self.take_g(block, &mut said)?;
         self.take_words(block, &mut said)?;
         let next = self.order(block, &said)?;
@@ -116,7 +115,7 @@ impl Work<'_> {
 
     /// Writes the parameters of a block; whether the look-ahead waits for its execution. Real-time parameters are written when
     /// the path comes to it.
-    fn write_parameters(&mut self, block: &Block) -> Result<bool, Refusal> {
+    fn write_parameters(&mut self, block: &Block, said: &mut Said) -> Result<bool, Refusal> {
         let mut synchronises = false;
         for (parameter, value) in block.writes() {
             let p = u32::from(parameter.number());
@@ -126,8 +125,7 @@ impl Work<'_> {
             if status.is_real_time() {
                 let value = value.map(|value| self.number(value)).transpose()?;
                 let q = self.memory.q(name)?;
-                let order = Order::Write { q, value };
-                self.run.orders.push_back((self.run.sequence, order));
+                said.writes.push(Function::Write { q, value });
                 continue;
             }
             let value = match value {

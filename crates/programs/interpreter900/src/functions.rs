@@ -12,7 +12,6 @@ use bahn_system900::{Acts, MFunction as Definition};
 
 use crate::block::{Next, Work};
 use crate::motion::Move;
-use crate::orders::Order;
 use crate::refusal::Refusal;
 use crate::run::{Loop, Said, Then};
 
@@ -42,6 +41,9 @@ impl Work<'_> {
             self.run.modal.feed = feed;
         }
         self.speed(block, &mut wanted);
+        let write =
+            |write: &Function| TechnologyFunction::new(write.clone(), At::Start, Synchronisation::Mos);
+        wanted.functions.splice(0..0, said.writes.iter().map(write));
         self.tool(said.tool, wanted.changes_tool)?;
         if said.shifts {
             for (_, axis) in self.axes.iter() {
@@ -137,9 +139,12 @@ impl Work<'_> {
                         "M{m} branches and names no block, as in `M{m}.200`"
                     )));
                 };
-                let order = Order::Branch { m, target };
-                self.run.orders.push_back((self.run.sequence, order));
-                wanted.functions.push(stop(At::Start, Synchronisation::MvsSvs));
+                let target = self.block_of(target)?;
+                let branch = Function::Branch { m, target };
+                let how = Synchronisation::MvsSvs;
+                wanted
+                    .functions
+                    .push(TechnologyFunction::new(branch, At::Start, how));
             }
             // Tools that a cycle changes go to no PLC [002:1731-1735].
             _ if m == 6 && self.has_cycle(6) => {}
@@ -165,6 +170,17 @@ impl Work<'_> {
         }
         wanted.synchronises |= definition.sync;
         Ok(())
+    }
+
+    /// The block of a number in the program that runs, as elements count blocks.
+    fn block_of(&self, number: u32) -> Result<u32, Refusal> {
+        let level = self.run.levels.last().map_or(0, |level| level.program);
+        let line = self
+            .texts
+            .program(level)
+            .and_then(|program| program.line_of(number));
+        let line = line.ok_or_else(|| Refusal::of(format!("no block has the number N{number}")))?;
+        Ok(self.texts.block(level, line).block)
     }
 
     /// What comes after the movement.

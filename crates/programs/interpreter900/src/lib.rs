@@ -3,7 +3,7 @@
 //! [`Reader900`] makes path elements of the blocks of a channel. It reads and writes the parameters of the control while it
 //! looks ahead: zero points, planes, feeds, tools, conditions. The memory belongs to the control, which
 //! [gives](Reader900::give_memory) it to the reader and [takes](Reader900::take_memory) it back; a test run leaves it there.
-//! What is written when the path comes to it, and what branches there, goes with the elements: [`Reader900::orders_of`].
+//! What is written when the path comes to it, and what branches there, goes with the elements as a function.
 //!
 //! Positions are those of the control: program coordinates with zero point, shifts and tool length, mm and degrees. A word that
 //! the manual does not explain is refused at its block with its name.
@@ -39,12 +39,10 @@ mod frame;
 mod functions;
 mod modal;
 mod motion;
-mod orders;
 mod reader;
 mod refusal;
 mod run;
 mod texts;
 mod tool;
 
-pub use orders::Order;
 pub use reader::Reader900;

@@ -18,7 +18,6 @@ use bahn_text::Files;
 
 use crate::block::{Next, Work};
 use crate::modal::Modal;
-use crate::orders::Order;
 use crate::refusal::Refusal;
 use crate::run::{ChannelAxes, Ended, Item, Level, NESTING_MAX, Run, Then};
 use crate::texts::Texts;
@@ -95,14 +94,6 @@ impl Reader900 {
     /// The parameters, where they are lent.
     pub fn memory(&self) -> Option<&Memory> {
         self.memory.as_ref()
-    }
-
-    /// What is to be done when the path comes to the block of a sequence, in the order of its text.
-    pub fn orders_of(&self, sequence: u64) -> impl Iterator<Item = Order> {
-        let orders = self.begun.iter().flat_map(|begun| &begun.run.orders);
-        orders
-            .filter(move |(own, _)| *own == sequence)
-            .map(|(_, order)| *order)
     }
 
     fn begin(&self, memory: &Memory) -> Begun {
@@ -411,11 +402,6 @@ impl Reader for Reader900 {
         if let Some(kept) = &mut self.kept {
             while kept.get(1).is_some_and(|(next, _)| next.sequence <= sequence) {
                 kept.pop_front();
-            }
-        }
-        if let Some(run) = self.run_mut() {
-            while run.orders.front().is_some_and(|(own, _)| *own < sequence) {
-                run.orders.pop_front();
             }
         }
     }

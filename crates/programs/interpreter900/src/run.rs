@@ -3,12 +3,11 @@
 use std::collections::VecDeque;
 
 use bahn_din::system900::AxisName;
-use bahn_path::{Axis, Barrier, BlockRef, PathElement, PerAxis, Position};
+use bahn_path::{Axis, Barrier, BlockRef, Function, PathElement, PerAxis, Position};
 use bahn_reader::ProgramError;
 use bahn_system900::{AxisBlock, Memory, slots};
 
 use crate::modal::Modal;
-use crate::orders::Order;
 
 /// Cycles that call each other (inferred).
 pub(crate) const NESTING_MAX: usize = 8;
@@ -124,8 +123,6 @@ pub(crate) struct Run {
     pub waiting: Option<(Barrier, Then)>,
     /// The block that stops the run.
     pub stopped: Option<BlockRef>,
-    /// What is to be done at elements that are on their way, by their sequence.
-    pub orders: VecDeque<(u64, Order)>,
     pub ended: Option<Ended>,
 }
 
@@ -146,7 +143,6 @@ impl Run {
             queue: VecDeque::new(),
             waiting: None,
             stopped: None,
-            orders: VecDeque::new(),
             ended: None,
         }
     }
@@ -168,4 +164,6 @@ pub(crate) struct Said {
     pub stops_exactly: Option<bool>,
     /// G92 stands in the block.
     pub shifts: bool,
+    /// Real-time parameters, which are written when the path comes to the block.
+    pub writes: Vec<Function>,
 }

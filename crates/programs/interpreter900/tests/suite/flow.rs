@@ -1,7 +1,6 @@
 //! Parameters, conditions, loops, skipped blocks, start block.
 
-use bahn_interpreter900::Order;
-use bahn_path::Barrier;
+use bahn_path::{Barrier, Function};
 use bahn_system900::Name;
 
 use crate::support::{ends, fault, reader, run};
@@ -67,15 +66,11 @@ fn real_time_parameters_go_with_the_path() {
             .number()
     };
     assert_eq!((held(500), held(501)), (Some(0.0), Some(8.0)));
-    let first = ran.elements[0].sequence;
-    let orders: Vec<Order> = reader.orders_of(first).collect();
-    assert_eq!(
-        orders,
-        [Order::Write {
-            q: 10_500,
-            value: Some(7.0)
-        }]
-    );
+    let write = Function::Write {
+        q: 10_500,
+        value: Some(7.0),
+    };
+    assert_eq!(ran.elements[0].functions()[0].function, write);
     assert_eq!(ran.barriers.len(), 1);
 }
 

@@ -1,6 +1,5 @@
 //! M functions and speeds.
 
-use bahn_interpreter900::Order;
 use bahn_path::{At, Barrier, Function, Synchronisation};
 
 use crate::support::{fault, reader, run};
@@ -29,7 +28,7 @@ fn functions_go_out_as_the_table_says() {
     );
 }
 
-/// M7.300 branches: it goes out before the movement and stops; where it goes on is said with its block.
+/// M7.300 branches: it goes out before the movement and stops, and names the block of N300, the second one.
 #[test]
 fn a_branch_names_its_block() {
     let mut reader = reader(M_TABLE, "N10 G1 X1 F100 M7.300\nN300 M30\n");
@@ -39,8 +38,7 @@ fn a_branch_names_its_block() {
         (function.at, function.synchronisation),
         (At::Start, Synchronisation::MvsSvs)
     );
-    let orders: Vec<Order> = reader.orders_of(ran.elements[0].sequence).collect();
-    assert_eq!(orders, [Order::Branch { m: 7, target: 300 }]);
+    assert_eq!(function.function, Function::Branch { m: 7, target: 2 });
     let said = fault(M_TABLE, "N10 M7\nN20 M30\n");
     assert!(said.starts_with("M7 branches and names no block"), "{said}");
 }
