@@ -94,34 +94,6 @@ impl Layout {
         parts.into_iter().map(u64::from).fold(1, u64::saturating_mul)
     }
 
-    /// The place of a zero point among those of a group, by its G function; `None` beyond them.
-    pub fn point(&self, g: u16) -> Option<u32> {
-        let g = u32::from(g);
-        let (hundred, last) = (g / 100, g % 100);
-        let point = match (hundred, last) {
-            (0, 53..=59) => last - 53,
-            (1.., 54..=59) => FIRST_POINTS + (hundred - 1) * FURTHER_POINTS + last - 54,
-            _ => return None,
-        };
-        (point < self.points).then_some(point)
-    }
-
-    /// The parameter of an axis of a zero point; everything counts from 0.
-    pub fn place(&self, area: u32, group: u32, point: u32, axis: u32) -> u32 {
-        let at = (area * self.groups + group) * self.points + point;
-        self.first + at * self.axes + axis
-    }
-
-    /// What a parameter of the array is: area, group, point, axis, from 0; `None` of another one.
-    pub fn of_parameter(&self, p: u32) -> Option<(u32, u32, u32, u32)> {
-        let at = p
-            .checked_sub(self.first)
-            .filter(|at| u64::from(*at) < self.count())?;
-        let (at, axis) = (at / self.axes, at % self.axes);
-        let (at, point) = (at / self.points, at % self.points);
-        Some((at / self.groups, at % self.groups, point, axis))
-    }
-
     fn cell(&self, memory: &Memory, channel: u8, p: u32) -> ZeroPoint {
         let at = p - self.first;
         let (at, axis) = (at / self.axes, at % self.axes);
