@@ -305,6 +305,20 @@ pub enum Function {
     Synchronise,
     /// The blank of the graphics (BLK FORM).
     Blank(Blank),
+    /// A parameter of a System 900 that is written when the path comes to it [002:268-273].
+    Write {
+        /// The system parameter.
+        q: u32,
+        /// What it gets; `None` clears it.
+        value: Option<f64>,
+    },
+    /// An M function of a System 900 whose acknowledgement ends the movement of its block and jumps [002:5484-5491].
+    Branch {
+        /// Its number.
+        m: u16,
+        /// The block to jump to, of the program that it stands in, as [`BlockRef::block`] counts.
+        target: u32,
+    },
 }
 
 /// What output S gives for a laser or a water jet until the next one, 0 to 9.999 V [000:9841-9909].

@@ -100,7 +100,7 @@ impl Stopwatch {
 
     fn time(&mut self, function: &Function) -> f64 {
         match function {
-            Function::M(_) => self.times.m_function_s,
+            Function::M(_) | Function::Branch { .. } => self.times.m_function_s,
             Function::Tool(call) if self.tool != Some(call.tool) => {
                 self.tool = Some(call.tool);
                 self.speed_rpm = call.speed_rpm;
@@ -121,7 +121,8 @@ impl Stopwatch {
             | Function::Voltage(_)
             | Function::Superimpose(_)
             | Function::Plc(_)
-            | Function::Blank(_) => 0.0,
+            | Function::Blank(_)
+            | Function::Write { .. } => 0.0,
         }
     }
 

@@ -80,12 +80,15 @@ impl<'a> Site<'a> {
             Function::Superimpose(range) => self.chain.superimposed.set_range(*range),
             // A stop has its barrier; it is the PLC that orients the spindle, with M19 or another M function;
             // the blank concerns nothing that moves;
-            // a voltage belongs to the path.
+            // a voltage belongs to the path;
+            // parameters and branches of a System 900 are in no program of a TNC.
             Function::Stop
             | Function::SpindleOrientation(_)
             | Function::Synchronise
             | Function::Voltage(_)
-            | Function::Blank(_) => {}
+            | Function::Blank(_)
+            | Function::Write { .. }
+            | Function::Branch { .. } => {}
         }
         true
     }

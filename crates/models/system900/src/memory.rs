@@ -304,7 +304,7 @@ impl Memory {
         Ok(self.at(self.place(name)?))
     }
 
-    fn put(&mut self, place: Place, cell: Cell) {
+    pub(crate) fn put(&mut self, place: Place, cell: Cell) {
         let slot = match place {
             Place::Q(number) => self.array.slot(number as usize),
             Place::OfChannel(channel, logical, offset) => {
