@@ -21,6 +21,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("motion", &["path"]),
     ("din", &["text", "path"]),
     ("nc", &["text", "path", "parameters", "program", "reader", "din"]),
+    (
+        "interpreter900",
+        &["text", "path", "parameters", "system900", "program", "reader", "din"],
+    ),
     ("script", &["text"]),
     ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
     (

@@ -1,0 +1,209 @@
+//! Movements of a block.
+//!
+//! Decision: G93 F is the time of a block in seconds, as that of G4 is. P8818 counts for G1, G2 and G3, P8815 takes the
+//! place of all of it. Without P8816 G0 is as fast as the axes allow
+//!
+//! Decision: An exact stop is an element in which nothing moves. G0 ends with it where P8858 is not 2
+//!
+//! Decision: G10 counts radius and angle about the zero of the program
+
+use bahn_path::{Axis, Curve, FeedRate, Position, Sense};
+use bahn_system900::PathData;
+
+use crate::arc::{self, By};
+use crate::axes::ChannelAxes;
+use crate::g_functions::Once;
+use crate::modal::{FeedKind, Modal};
+use crate::refusal::{Refusal, wrong};
+use crate::words::Words;
+
+/// A movement that a block programs.
+pub(crate) struct Movement {
+    pub curve: Curve,
+    pub end: Position,
+    pub feed: FeedRate,
+    /// The path comes to rest at its end.
+    pub stops: bool,
+}
+
+/// Where the words of a block lead.
+fn end(words: &Words, modal: &mut Modal, here: &Position) -> Position {
+    if modal.rotation.is_none() && !modal.is_polar {
+        let mut end = *here;
+        for axis in Axis::ALL {
+            if let Some(value) = words.axes[axis] {
+                end[axis] = match modal.is_absolute {
+                    true => modal.axis_to_machine(axis, value),
+                    false => here[axis] + if modal.is_reversed(axis) { -value } else { value },
+                };
+            }
+        }
+        return end;
+    }
+    let mut program = modal.to_program(here);
+    for axis in Axis::ALL {
+        if let Some(value) = words.axes[axis] {
+            program[axis] = match modal.is_absolute {
+                true => value,
+                false => program[axis] + value,
+            };
+        }
+    }
+    let moves_in_plane = words.polar.iter().any(Option::is_some);
+    if moves_in_plane {
+        for (kept, said) in modal.polar.iter_mut().zip(words.polar) {
+            *kept = match (said, modal.is_absolute) {
+                (Some(value), true) => value,
+                (Some(value), false) => *kept + value,
+                (None, _) => *kept,
+            };
+        }
+        let [radius, angle] = modal.polar;
+        let (sin, cos) = angle.to_radians().sin_cos();
+        modal.plane.set(&mut program, [radius * cos, radius * sin]);
+    }
+    let mut end = modal.to_machine(&program);
+    let plane = modal.plane;
+    let moves_in_plane = moves_in_plane
+        || [plane.first, plane.second]
+            .iter()
+            .any(|axis| words.axes[*axis].is_some());
+    for axis in Axis::ALL {
+        let stays = words.axes[axis].is_none() && !(moves_in_plane && plane.contains(axis));
+        if stays {
+            end[axis] = here[axis];
+        }
+    }
+    end
+}
+
+/// The movement of a block; `None` where it names no axis and no circle.
+pub(crate) fn of(
+    words: &Words,
+    modal: &mut Modal,
+    once: Once,
+    here: &Position,
+    data: &PathData,
+    axes: &ChannelAxes,
+) -> Result<Option<Movement>, Refusal> {
+    let has_centre = words.centre.iter().any(Option::is_some);
+    let is_circle = matches!(modal.motion, 2 | 3);
+    let moves = words.has_axes || words.polar.iter().any(Option::is_some);
+    if !moves && !(is_circle && has_centre) {
+        return match has_centre || words.radius.is_some() {
+            true => wrong("I, J, K and R belong to a circle with G2 or G3"),
+            false => Ok(None),
+        };
+    }
+    if !is_circle && (has_centre || words.radius.is_some()) {
+        return wrong("I, J, K and R belong to a circle with G2 or G3");
+    }
+    let end = end(words, modal, here);
+    let curve = match is_circle {
+        false => Curve::Line,
+        true => circle(words, modal, here, &end, data)?,
+    };
+    let is_rapid = modal.motion == 0;
+    let mut feed = match is_rapid {
+        true => data.rapid_feed().map_or(FeedRate::Rapid, FeedRate::Programmed),
+        false => FeedRate::Programmed(programmed(modal, &curve, here, &end, data)?),
+    };
+    if let (Curve::Arc(arc), Some(deviation)) = (&curve, data.circle_deviation()) {
+        let (radius, _) = arc.radii(here, &end);
+        feed = feed.up_to(circle_limit(radius, deviation, modal, data, axes)?);
+    }
+    let exact = once.exact_stop.unwrap_or(modal.exact_stop);
+    Ok(Some(Movement {
+        curve,
+        end,
+        feed,
+        stops: exact || is_rapid && data.end_of_rapid() != 2,
+    }))
+}
+
+fn circle(
+    words: &Words,
+    modal: &Modal,
+    here: &Position,
+    end: &Position,
+    data: &PathData,
+) -> Result<Curve, Refusal> {
+    // I, J; K, I; J, K by the plane [002:897-934].
+    let (first, second) = match modal.plane_word {
+        18 | 118 => (2, 0),
+        19 | 119 => (1, 2),
+        _ => (0, 1),
+    };
+    let centre = |index: usize| words.centre.get(index).copied().flatten();
+    let third = 3 - first - second;
+    if centre(third).is_some() {
+        let letter = ["I", "J", "K"].get(third).copied().unwrap_or_default();
+        return wrong(format!(
+            "{letter} is no centre in the plane of G{}",
+            modal.plane_word
+        ));
+    }
+    let by = match words.radius {
+        Some(radius) => By::Radius(radius),
+        None if centre(first).is_none() && centre(second).is_none() => {
+            return wrong("a circle needs its centre or its radius");
+        }
+        None => By::Centre(modal.vector([centre(first).unwrap_or(0.0), centre(second).unwrap_or(0.0)])),
+    };
+    let sense = match (modal.motion == 2) ^ modal.is_turned_over() {
+        true => Sense::Clockwise,
+        false => Sense::CounterClockwise,
+    };
+    arc::circle(modal.plane, [here, end], by, sense, data.radius_error_max())
+}
+
+/// The feed of G1, G2, G3, mm/min.
+fn programmed(
+    modal: &Modal,
+    curve: &Curve,
+    here: &Position,
+    end: &Position,
+    data: &PathData,
+) -> Result<f64, Refusal> {
+    if let Some(test) = data.test_feed() {
+        return Ok(test);
+    }
+    if modal.feed <= 0.0 {
+        return wrong("no feed is programmed: F is 0");
+    }
+    let feed = match modal.feed_kind {
+        FeedKind::PerMinute => modal.feed,
+        FeedKind::Time => curve.length(here, end) / modal.feed * 60.0,
+        FeedKind::PerTurn => {
+            let spindle = usize::from(data.feed_spindle() - 1);
+            let rpm = modal.speeds.get(spindle).copied().unwrap_or(0.0);
+            if rpm <= 0.0 {
+                return wrong("a feed per revolution needs the speed of its spindle");
+            }
+            modal.feed * rpm
+        }
+    };
+    let percent = data.feed_percent().filter(|percent| *percent > 0.0);
+    let feed = feed * percent.unwrap_or(100.0) / 100.0;
+    // A path without length takes no time.
+    Ok(if feed > 0.0 { feed } else { modal.feed })
+}
+
+/// v = Kv * sqrt(2 R dev) in mm/s, by the smallest Kv of the plane.
+fn circle_limit(
+    radius: f64,
+    deviation: f64,
+    modal: &Modal,
+    data: &PathData,
+    axes: &ChannelAxes,
+) -> Result<f64, Refusal> {
+    if radius <= deviation {
+        return Err(Refusal::Numbered(
+            1237,
+            "the radius of the circle is not greater than P8852",
+        ));
+    }
+    let kv = |slot: Axis| axes.of_slot(slot).map_or(16.0, |axis| data.kv(axis.logical));
+    let kv = kv(modal.plane.first).min(kv(modal.plane.second));
+    Ok(60.0 * kv * (2.0 * radius * deviation).sqrt())
+}
