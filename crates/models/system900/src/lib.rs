@@ -31,14 +31,20 @@
 )]
 
 mod array;
+mod channels;
 mod check;
 mod descriptor;
 mod edit;
 mod file;
+mod lock;
+mod locks;
 mod m_functions;
 mod memory;
+mod messages;
 mod name;
+mod networks;
 mod numbers;
+mod programs;
 mod reports;
 mod status;
 mod table;
@@ -47,13 +53,22 @@ mod value;
 mod zero;
 
 pub use array::{Cell, PARAMETERS_MAX, PARAMETERS_MIN};
+pub use channels::Channels;
 pub use check::{Channel, ChannelAxis, Checked, check};
 pub use descriptor::AxisWord;
 pub use edit::Change;
 pub use file::DataFile;
+pub use lock::Lock;
+pub use locks::{Locks, Part, Writer, refusing};
 pub use m_functions::{Acts, M_MAX, MFunction, m_number};
 pub use memory::{Memory, Place, SpaceError};
+pub use messages::{
+    Message, MessageKind, MessageWord, NamedMessage, Pending, acknowledges_with_mode, named_message,
+    named_messages,
+};
 pub use name::{Name, NoName};
+pub use networks::{Together, network, together};
+pub use programs::{NoProgramName, ProgramName, Programs};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
 pub use status::{LOCKS, NoStatus, Receivers, Status};
 pub use table::{Effect, Needs, Row, row, rows};

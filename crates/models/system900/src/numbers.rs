@@ -62,3 +62,24 @@ pub const SPINDLES: u32 = 11_640;
 pub const COUPLING_BLOCK: u32 = 20;
 /// Couplings, and spindles.
 pub const COUPLINGS_MAX: u32 = 8;
+
+/// The networks of channels: the first, and its parameters [002:1272-1350].
+pub const NETWORKS: u32 = 900;
+/// Parameters of each.
+pub const NETWORK: u32 = 10;
+/// How many there are.
+pub const NETWORKS_MAX: u32 = 4;
+/// What of channels 1 to 4 is pending, then of 5 to 8 [002:609-628].
+pub const PENDING: u32 = 98;
+/// In a descriptor: who acknowledges messages [002:939-948].
+pub const ACKNOWLEDGEMENT: u32 = 57;
+/// Messages of a channel by their kinds, then axis and information [002:3368-3375].
+pub const MESSAGES: u32 = 8500;
+/// The locks of AUTO [002:3387-3411].
+pub const AUTO_LOCKS: u32 = 8510;
+/// Key switches 1 to 4, and software switch 1 at the eighth place after them [002:5235-5270].
+pub const SWITCHES: u32 = 11_000;
+/// What each of them locks, likewise [002:5318-5365].
+pub const LOCK_DEFINITIONS: u32 = 11_010;
+/// The locks that are active [002:5370-5417].
+pub const ACTIVE_LOCKS: u32 = 11_020;

@@ -10,5 +10,7 @@ mod checks;
 mod files;
 mod laws;
 mod layout;
+mod locks;
 mod memory;
+mod messages;
 mod table;
