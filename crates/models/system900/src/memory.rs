@@ -442,14 +442,22 @@ impl Memory {
 
     /// All places that hold something.
     pub fn loaded(&self) -> impl Iterator<Item = Place> {
-        let system = self.array.cells().map(|(number, _)| Place::Q(number));
+        self.places().filter(|place| self.at(*place).status.is_loaded())
+    }
+
+    /// All places.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let count = u32::try_from(self.count()).unwrap_or(u32::MAX);
         let channels = (1..=CHANNELS_MAX).flat_map(|channel| {
             (1..=AXES).flat_map(move |logical| {
                 AXIS_OWN.map(move |offset| Place::OfChannel(channel, logical, offset))
             })
         });
-        system
-            .chain(channels)
-            .filter(|place| self.at(*place).status.is_loaded())
+        (0..count).map(Place::Q).chain(channels)
+    }
+
+    /// What all places hold.
+    pub(crate) fn cells_mut(&mut self) -> impl Iterator<Item = &mut Cell> {
+        self.array.cells_mut().chain(self.of_channels.cells_mut())
     }
 }

@@ -83,3 +83,9 @@ pub const SWITCHES: u32 = 11_000;
 pub const LOCK_DEFINITIONS: u32 = 11_010;
 /// The locks that are active [002:5370-5417].
 pub const ACTIVE_LOCKS: u32 = 11_020;
+/// The unit of lengths [002:6324-6362].
+pub const UNIT: u32 = 11_308;
+/// Stops the event buffer [002:6074-6078].
+pub const SAMPLING: u32 = 11_270;
+/// What the event buffer records beside, of channel 1 [002:6169-6195].
+pub const SAMPLING_OF_CHANNELS: u32 = 11_271;

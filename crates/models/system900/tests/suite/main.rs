@@ -7,6 +7,7 @@
 )]
 
 mod checks;
+mod events;
 mod files;
 mod laws;
 mod layout;
@@ -14,3 +15,4 @@ mod locks;
 mod memory;
 mod messages;
 mod table;
+mod units;
