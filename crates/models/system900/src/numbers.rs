@@ -89,3 +89,27 @@ pub const UNIT: u32 = 11_308;
 pub const SAMPLING: u32 = 11_270;
 /// What the event buffer records beside, of channel 1 [002:6169-6195].
 pub const SAMPLING_OF_CHANNELS: u32 = 11_271;
+/// How many axes the system has [002:376-379].
+pub const AXES_OF_SYSTEM: u32 = 1;
+/// The confirmation of a [`FUNCTION`] [002:503-521].
+pub const CONFIRMATION: u32 = 11;
+/// What the starting routine has cleared: parameters, the same until the user clears it, programs, likewise [002:580-595].
+pub const START_INFO: u32 = 50;
+/// Parameters below it are written back by themselves: q0 to q999 [002:480].
+pub const FIRST_RESTORED: u32 = 1000;
+/// In a descriptor: decimals of positions [002:954-965].
+pub const DECIMALS: u32 = 59;
+/// Number of a channel, then its axes and its last logical axis [002:3447-3451].
+pub const CHANNEL: u32 = 8550;
+/// Coordinate systems of HAND, axes without interpolation or reduction: reset at power-on [002:4020-4048] [002:4793-4828].
+pub const RESET_AT_START: [u32; 5] = [8757, 8758, 8759, 8893, 8894];
+/// Radius, length and offsets of the tool in the spindle, and of the one that is computed with [002:6342-6343].
+pub const TOOL_LENGTHS: [std::ops::Range<u32>; 2] = [8110..8114, 8160..8164];
+/// In the record of a tool: from here on it has the decimals of positions [002:961-963].
+pub const TOOL_VALUES: u32 = 10;
+/// In the parameters of an axis: whether it is a rotary one [002:6905-6916].
+pub const KIND_OF_AXIS: u32 = 1;
+/// In the parameters of an axis: those that are displayed, P12150 to P12169 [002:960].
+pub const DISPLAYS: std::ops::Range<u32> = 150..170;
+/// Key switch 1, P11000 [002:5252-5262].
+pub const KEY_SWITCH: u32 = 11_000;

@@ -19,12 +19,31 @@ const fn word(number: u8, pressed: u8, kind: u8) -> Key {
     Key(i32::from_le_bytes([number, pressed, 0, kind]))
 }
 
-/// The lines of the example, with its times [002:6106-6144]: arrows are `-->`, keys have numbers where the drawing has
-/// names.
+/// Events with their times are these lines, in their order.
+fn printed(lines: &[(u64, Event, &str)]) {
+    let mut events = EventBuffer::new(Depth::Short);
+    for (time, event, _) in lines {
+        events.push(*time, *event);
+    }
+    let lines = (1..).zip(lines);
+    let wanted: String = lines
+        .map(|(number, (_, _, line))| format!("{number} {line}\n"))
+        .collect();
+    assert_eq!(events.to_string(), wanted);
+    let output = events.output("1. 2.99", ms(2, 12, 57, 999));
+    assert!(
+        output.starts_with("SAMPLE DATA\n\nOutput:\nDATE: 1. 2.99\nTime: 02:12:57\n"),
+        "{output}"
+    );
+    assert!(output.ends_with(&format!("{wanted}\nSAMPLE END\n")), "{output}");
+}
+
+/// The lines of the example, with its times [002:6106-6144]; keys have numbers where the drawing has names.
 #[test]
-fn the_printed_lines() {
-    let program = ProgramName::Program(1000);
-    let lines = [
+fn printed_pictures_and_keys() {
+    let picture = |letters: &[u8; 8]| Event::Picture(*letters);
+    let key = |number, pressed, kind| Event::Key(word(number, pressed, kind));
+    printed(&[
         (
             ms(0, 0, 0, 0),
             Event::Boot,
@@ -32,103 +51,52 @@ fn the_printed_lines() {
         ),
         (
             ms(2, 8, 39, 445),
-            Event::Picture(*b"INIT\0\0\0\0"),
+            picture(b"INIT\0\0\0\0"),
             "02:08:39,445 PICTURE: INIT",
         ),
         (
             ms(2, 8, 42, 455),
-            Event::Picture(*b"A_INIT\0\0"),
+            picture(b"A_INIT\0\0"),
             "02:08:42,455 PICTURE: A_INIT",
         ),
-        (
-            ms(2, 11, 55, 650),
-            Event::Key(word(20, 1, 2)),
-            "02:11:55,650 C-KEY 20",
-        ),
+        (ms(2, 11, 55, 650), key(20, 1, 2), "02:11:55,650 C-KEY 20"),
         (
             ms(2, 11, 55, 700),
-            Event::Key(word(20, 0, 2)),
+            key(20, 0, 2),
             "02:11:55,700 C-KEY 20 released",
         ),
-        (
-            ms(2, 11, 56, 965),
-            Event::Key(word(5, 1, 1)),
-            "02:11:56,965 F-KEY F5",
-        ),
-        (
-            ms(2, 11, 58, 525),
-            Event::Key(word(b'1', 0, 0)),
-            "02:11:58,525 KEY \"1\"",
-        ),
-        (
-            ms(2, 11, 59, 0),
-            Event::Key(word(13, 0, 0)),
-            "02:11:59,000 KEY 13",
-        ),
-        (
-            ms(2, 11, 59, 1),
-            Event::Key(word(7, 1, 3)),
-            "02:11:59,001 T-KEY 7",
-        ),
+        (ms(2, 11, 56, 965), key(5, 1, 1), "02:11:56,965 F-KEY F5"),
+        (ms(2, 11, 58, 525), key(b'1', 0, 0), "02:11:58,525 KEY \"1\""),
+        (ms(2, 11, 59, 0), key(13, 0, 0), "02:11:59,000 KEY 13"),
+        (ms(2, 11, 59, 1), key(7, 1, 3), "02:11:59,001 T-KEY 7"),
+    ]);
+}
+
+/// Likewise; arrows are `-->`.
+#[test]
+fn printed_parameters_and_messages() {
+    let sent = |to, text, value| Event::Sent(to, name(text), cell(value));
+    let came = Event::Received(Partner::Plc, name("P8703"), cell("1"));
+    printed(&[
         (
             ms(2, 12, 8, 990),
-            Event::Sent(Partner::Plc, name("q1137"), cell("65822")),
+            sent(Partner::Plc, "q1137", "65822"),
             "02:12:08,990 PARA CNC --> PLC K0 q1137: 65822",
         ),
         (
             ms(2, 12, 8, 995),
-            Event::Received(Partner::Plc, name("P8703"), cell("1")),
+            came,
             "02:12:08,995 PARA CNC <-- PLC K1 P8703: 1",
         ),
         (
             ms(2, 12, 9, 0),
-            Event::Sent(Partner::Panel, name("2:P8900"), cell("--")),
+            sent(Partner::Panel, "2:P8900", "--"),
             "02:12:09,000 PARA CNC --> OP K2 P8900: --",
         ),
         (
             ms(2, 12, 13, 820),
             Event::Message(0, 3498),
             "02:12:13,820 K0 message: M3498",
-        ),
-        (
-            ms(2, 12, 21, 15),
-            Event::Block(1, program, 11_160),
-            "02:12:21,015 PROG: K1 P1000 N11160",
-        ),
-        (
-            ms(2, 12, 21, 16),
-            Event::Block(2, ProgramName::Cycle(6), 10),
-            "02:12:21,016 PROG: K2 Z6 N10",
-        ),
-        (
-            ms(2, 12, 21, 340),
-            Event::Function {
-                channel: 1,
-                m: 30,
-                place: 0,
-                branch: None,
-            },
-            "02:12:21,340 K1 M30 --> PLC, NR in the block:0, without branch",
-        ),
-        (
-            ms(2, 12, 21, 341),
-            Event::Function {
-                channel: 1,
-                m: 7,
-                place: 2,
-                branch: Some(300),
-            },
-            "02:12:21,341 K1 M7 --> PLC, NR in the block:2, branch to N300",
-        ),
-        (
-            ms(2, 12, 21, 340),
-            Event::EndOfBlock(1),
-            "02:12:21,340 K1 END OF BLOCK CNC --> PLC, CNC WAITS for acknowledgement",
-        ),
-        (
-            ms(2, 12, 21, 340),
-            Event::Release(1, cell("1")),
-            "02:12:21,340 K1 CNC <-- PLC SAFRE: 1",
         ),
         (
             ms(2, 12, 22, 0),
@@ -145,22 +113,52 @@ fn the_printed_lines() {
             Event::Message(2, 1),
             "123:00:00,007 K2 message: M1",
         ),
-    ];
-    let mut events = EventBuffer::new(Depth::Short);
-    for (time, event, _) in lines {
-        events.push(time, event);
-    }
-    let wanted: String = (1..)
-        .zip(lines)
-        .map(|(number, (_, _, line))| format!("{number} {line}\n"))
-        .collect();
-    assert_eq!(events.to_string(), wanted);
-    let output = events.output("1. 2.99", ms(2, 12, 57, 999));
-    assert!(
-        output.starts_with("SAMPLE DATA\n\nOutput:\nDATE: 1. 2.99\nTime: 02:12:57\n"),
-        "{output}"
-    );
-    assert!(output.ends_with(&format!("{wanted}\nSAMPLE END\n")), "{output}");
+    ]);
+}
+
+/// Likewise.
+#[test]
+fn printed_blocks_and_functions() {
+    let program = ProgramName::Program(1000);
+    let function = |m, place, branch| Event::Function {
+        channel: 1,
+        m,
+        place,
+        branch,
+    };
+    let at = ms(2, 12, 21, 340);
+    printed(&[
+        (
+            ms(2, 12, 21, 15),
+            Event::Block(1, program, 11_160),
+            "02:12:21,015 PROG: K1 P1000 N11160",
+        ),
+        (
+            ms(2, 12, 21, 16),
+            Event::Block(2, ProgramName::Cycle(6), 10),
+            "02:12:21,016 PROG: K2 Z6 N10",
+        ),
+        (
+            at,
+            function(30, 0, None),
+            "02:12:21,340 K1 M30 --> PLC, NR in the block:0, without branch",
+        ),
+        (
+            at,
+            function(7, 2, Some(300)),
+            "02:12:21,340 K1 M7 --> PLC, NR in the block:2, branch to N300",
+        ),
+        (
+            at,
+            Event::EndOfBlock(1),
+            "02:12:21,340 K1 END OF BLOCK CNC --> PLC, CNC WAITS for acknowledgement",
+        ),
+        (
+            at,
+            Event::Release(1, cell("1")),
+            "02:12:21,340 K1 CNC <-- PLC SAFRE: 1",
+        ),
+    ]);
 }
 
 /// Which of some events of the channels 1 and 2 are recorded.

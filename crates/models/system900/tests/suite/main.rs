@@ -9,6 +9,7 @@
 mod checks;
 mod events;
 mod files;
+mod flash;
 mod laws;
 mod layout;
 mod locks;
