@@ -98,6 +98,9 @@ pub enum SpaceError {
     /// A parameter lock that is set locks it.
     #[error("{0} is locked by parameter lock {1}")]
     Locked(Name, u8),
+    /// P11308 is given a value that is no unit.
+    #[error("{0} is 0 for metric lengths, 1, 2 or 3 for inches")]
+    NoUnit(Name),
     /// Another lock that is active closes it.
     #[error("{0} is locked by {1}")]
     Closed(Name, Lock),

@@ -15,5 +15,6 @@ mod layout;
 mod locks;
 mod memory;
 mod messages;
+mod running;
 mod table;
 mod units;
