@@ -127,3 +127,13 @@ pub const RELATIVE: u32 = 111;
 pub const ABSOLUTE: u32 = 112;
 /// So far behind [`RELATIVE`] and [`ABSOLUTE`] it says that it is there [002:8572-8580].
 pub const REACHED: u32 = 80;
+/// The key that was pressed or released [002:6040-6056].
+pub const KEY: u32 = 11_260;
+/// The second half of the name of the picture; the first one stands before it [002:6059-6068].
+pub const PICTURE: u32 = 11_262;
+/// Counts what is exchanged with the PLC [002:6205-6247].
+pub const DIAGNOSIS: u32 = 11_280;
+/// How often something went to the PLC, then channel, number and content of the last one.
+pub const TO_PLC: u32 = 11_281;
+/// The same of what came from it.
+pub const FROM_PLC: u32 = 11_291;

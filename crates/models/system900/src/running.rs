@@ -2,7 +2,7 @@
 //!
 //! Decision: A write goes to those whom the status names, and to the PLC also where the table gives the parameter a marker;
 //! never back to the one who wrote it. One that goes to the interpolator or runs a routine does so whatever its value was
-//! before: clearing P12111 again is a command again
+//! before: clearing P12111 again is a command again. q1 goes to the PLC as the manual says of it
 //!
 //! Decision: Routines belong to numbers, whatever bit 3 of the status byte 2 says: files seldom give statuses
 //!
@@ -10,14 +10,14 @@
 
 use crate::array::Cell;
 use crate::channels::Channels;
-use crate::events::{Event, EventBuffer, Partner};
+use crate::events::{Event, EventBuffer, Key, Partner};
 use crate::locks::{Part, Writer, refusing};
 use crate::memory::{Memory, Place, SpaceError};
 use crate::messages::MessageKind;
 use crate::name::Name;
 use crate::numbers::{
-    ABSOLUTE, ACKNOWLEDGE, AXES, AXIS, AXIS_BLOCK, FUNCTION, LOCK_SWITCHES, MESSAGES, POSITION, REACHED,
-    RELATIVE, SAMPLE_ENTRY, UNIT,
+    ABSOLUTE, ACKNOWLEDGE, AXES, AXES_OF_SYSTEM, AXIS, AXIS_BLOCK, DIAGNOSIS, FROM_PLC, FUNCTION, KEY,
+    LOCK_SWITCHES, MESSAGES, PICTURE, POSITION, REACHED, RELATIVE, SAMPLE_ENTRY, SHARED, TO_PLC, UNIT,
 };
 use crate::outbox::{News, Outbox, Receiver, Transfer};
 use crate::table::row;
@@ -26,6 +26,9 @@ use crate::value::Value;
 
 /// Parameters below it belong to no channel [002:16-22].
 const OF_CHANNELS_FROM: u32 = 10_000;
+
+/// It is not counted [002:6244-6245].
+const NOT_DIAGNOSED: Name = Name::Q(1160);
 
 /// A routine of the control that a write asks for, and that is none of the parameters alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,6 +155,8 @@ impl Running {
         let receivers = self.memory.at(place).status().receivers();
         match receiver {
             Receiver::Interpolator => receivers.interpolator,
+            // As the manual says of it [002:376-379].
+            Receiver::Plc if place == Place::Q(AXES_OF_SYSTEM) => true,
             Receiver::Plc => {
                 receivers.plc || row(self.memory.name_of(place)).is_some_and(|row| row.plc().next().is_some())
             }
@@ -199,7 +204,10 @@ impl Running {
             _ => self.memory.name_of(place),
         };
         match wrote {
-            Some(Receiver::Plc) => self.record(time_ms, Event::Received(Partner::Plc, named, cell)),
+            Some(Receiver::Plc) => {
+                self.record(time_ms, Event::Received(Partner::Plc, named, cell));
+                self.diagnose(false, named, cell);
+            }
             Some(Receiver::Panel) => self.record(time_ms, Event::Received(Partner::Panel, named, cell)),
             _ => {}
         }
@@ -211,7 +219,10 @@ impl Running {
                 outbox.push(Transfer { place, cell });
             }
             match receiver {
-                Receiver::Plc => self.record(time_ms, Event::Sent(Partner::Plc, named, cell)),
+                Receiver::Plc => {
+                    self.record(time_ms, Event::Sent(Partner::Plc, named, cell));
+                    self.diagnose(true, named, cell);
+                }
                 Receiver::Panel => self.record(time_ms, Event::Sent(Partner::Panel, named, cell)),
                 Receiver::Interpolator => {}
             }
@@ -234,6 +245,13 @@ impl Running {
         };
         match number {
             SAMPLE_ENTRY => self.record(time_ms, Event::Entry(cell)),
+            KEY => {
+                if let Some(bits) = cell.bits() {
+                    self.record(time_ms, Event::Key(Key(bits)));
+                }
+            }
+            // The second half of the name, after the first one.
+            PICTURE => self.picture(time_ms),
             ACKNOWLEDGE => return Some(Routine::Acknowledge(channel)),
             number if LOCK_SWITCHES.contains(&number) => self.memory.update_locks(self.auto),
             number => {
@@ -251,6 +269,39 @@ impl Running {
             }
         }
         None
+    }
+
+    /// Another picture is shown: its name stands in two parameters [002:6059-6068].
+    fn picture(&mut self, time_ms: u64) {
+        let bytes = |number| self.memory.shared(number).bits().unwrap_or(0).to_le_bytes();
+        let letters = bytes(PICTURE - 1).into_iter().chain(bytes(PICTURE));
+        let mut name = [0; 8];
+        for (slot, letter) in name.iter_mut().zip(letters) {
+            *slot = letter;
+        }
+        self.record(time_ms, Event::Picture(name));
+    }
+
+    /// Counts an exchange with the PLC while P11280 asks for it, and shows the last one [002:6205-6247].
+    fn diagnose(&mut self, to_plc: bool, named: Name, cell: Cell) {
+        let (channel, number) = match named {
+            Name::Q(number) => (0, number),
+            Name::P(channel, number) => (channel, number),
+        };
+        if self.memory.shared(DIAGNOSIS).whole() != Some(1) || named == NOT_DIAGNOSED {
+            return;
+        }
+        let first = if to_plc { TO_PLC } else { FROM_PLC };
+        let count = self.memory.shared(first).whole().unwrap_or(0);
+        let count = i32::try_from(count).unwrap_or(0).wrapping_add(1);
+        let shown = [count, channel.into(), i32::try_from(number).unwrap_or(0)];
+        for (place, value) in (first..).zip(shown) {
+            self.memory.set_shared(place, value);
+        }
+        self.memory.set_number(Name::P(1, first + 3), None);
+        if let Some(bits) = cell.bits() {
+            self.memory.set_word(first + 3 - SHARED.0 + SHARED.1, bits);
+        }
     }
 
     /// Clearing P12111 or P12112 takes the report back that the position is reached [002:7799-7815].

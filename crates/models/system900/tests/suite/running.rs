@@ -320,6 +320,65 @@ fn writes_are_recorded() {
     assert_eq!(running.events().count(), 8, "nothing is recorded any more");
 }
 
+/// Keys and pictures are parameters of the panel, and recorded [002:6036-6068].
+#[test]
+fn keys_and_pictures_are_recorded() {
+    let mut running = running(&[], &[]);
+    // `INIT` and `_A`, the first letter in byte 1.
+    let letters = |text: &[u8; 4]| format!("${:X}", u32::from_le_bytes(*text));
+    for (text, value) in [
+        ("P11260", "$02000114".to_owned()),
+        ("P11261", letters(b"INIT")),
+        ("P11262", letters(b"_A\0\0")),
+        ("P11260", "--".to_owned()),
+    ] {
+        write(&mut running, Writer::Editor, text, &value).unwrap();
+    }
+    let lines = "1 00:00:01,500 C-KEY 20\n2 00:00:01,500 PICTURE: INIT_A\n";
+    assert_eq!(running.events().to_string(), lines);
+}
+
+/// With P11280 = 1 exchanges with the PLC are counted, and the last one is shown [002:6205-6247].
+#[test]
+fn exchanges_with_the_plc_are_counted() {
+    let mut running = running(&[], &[("P5", PLC), ("q1160", PLC), ("q9000", PLC)]);
+    let shown = |running: &Running, first: u32| {
+        let of = |number| running.memory().cell(Name::P(1, number)).unwrap().number();
+        [first, first + 1, first + 2, first + 3].map(of)
+    };
+    write(&mut running, Writer::Program, "P5", "1.5").unwrap();
+    assert_eq!(shown(&running, 11_281), [None; 4], "not before it is asked for");
+    write(&mut running, Writer::Program, "P11280", "1").unwrap();
+    write(&mut running, Writer::Program, "P5", "1.5").unwrap();
+    // Its four bytes: 15, with one decimal.
+    assert_eq!(
+        shown(&running, 11_281),
+        [Some(1.0), Some(1.0), Some(5.0), Some(15.0)]
+    );
+    write(&mut running, Writer::Program, "q1160", "3").unwrap();
+    write(&mut running, Writer::Control, "q9000", "--").unwrap();
+    assert_eq!(
+        shown(&running, 11_281),
+        [Some(2.0), Some(0.0), Some(9000.0), None]
+    );
+    write(&mut running, Writer::Plc, "P7", "7").unwrap();
+    assert_eq!(
+        shown(&running, 11_291),
+        [Some(1.0), Some(1.0), Some(7.0), Some(7.0)]
+    );
+}
+
+/// q1 goes to the PLC [002:376-379].
+#[test]
+fn the_number_of_axes_goes_to_the_plc() {
+    let running = running(&[("q1", "2")], &[]);
+    let all: Vec<Place> = running
+        .all(Receiver::Plc)
+        .map(|transfer| transfer.place)
+        .collect();
+    assert_eq!(all, [Place::Q(1)]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
