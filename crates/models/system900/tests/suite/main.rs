@@ -15,6 +15,7 @@ mod layout;
 mod locks;
 mod memory;
 mod messages;
+mod portal;
 mod running;
 mod table;
 mod units;
