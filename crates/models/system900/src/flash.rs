@@ -56,10 +56,14 @@ pub enum FlashFunction {
     ListFlash,
     /// 510.
     RemoveDll,
-    /// 520, 521.
-    NoDma(bool),
-    /// 530, 531.
-    PlcBig(bool),
+    /// 520.
+    RemoveNoDma,
+    /// 521.
+    SetNoDma,
+    /// 530.
+    RemovePlcBig,
+    /// 531.
+    SetPlcBig,
 }
 
 impl FlashFunction {
@@ -78,16 +82,21 @@ impl FlashFunction {
             500 => FlashFunction::ListMemory,
             501 => FlashFunction::ListFlash,
             510 => FlashFunction::RemoveDll,
-            520 | 521 => FlashFunction::NoDma(number == 521),
-            530 | 531 => FlashFunction::PlcBig(number == 531),
+            520 => FlashFunction::RemoveNoDma,
+            521 => FlashFunction::SetNoDma,
+            530 => FlashFunction::RemovePlcBig,
+            531 => FlashFunction::SetPlcBig,
             _ => return None,
         })
     }
 
     /// Whether q11 has to hold its number first [002:503-521].
     fn is_confirmed(self) -> bool {
-        use FlashFunction::{NoDma, PlcBig, RemoveDll};
-        matches!(self, RemoveDll | NoDma(_) | PlcBig(_))
+        use FlashFunction::{RemoveDll, RemoveNoDma, RemovePlcBig, SetNoDma, SetPlcBig};
+        matches!(
+            self,
+            RemoveDll | RemoveNoDma | SetNoDma | RemovePlcBig | SetPlcBig
+        )
     }
 }
 
@@ -210,8 +219,10 @@ impl Flash {
             FlashFunction::ListMemory => self.listing = Listing::Memory,
             FlashFunction::ListFlash => self.listing = Listing::Flash,
             FlashFunction::RemoveDll => self.switches.no_dll = true,
-            FlashFunction::NoDma(is_set) => self.switches.no_dma = is_set,
-            FlashFunction::PlcBig(is_set) => self.switches.plc_big = is_set,
+            FlashFunction::RemoveNoDma => self.switches.no_dma = false,
+            FlashFunction::SetNoDma => self.switches.no_dma = true,
+            FlashFunction::RemovePlcBig => self.switches.plc_big = false,
+            FlashFunction::SetPlcBig => self.switches.plc_big = true,
         }
         Ok(0)
     }
