@@ -107,6 +107,16 @@ pub enum SpaceError {
 }
 
 impl SpaceError {
+    /// The same of the name by which somebody called the parameter.
+    pub(crate) fn of_name(self, name: Name) -> SpaceError {
+        match self {
+            SpaceError::Value(_, error) => SpaceError::Value(name, error),
+            SpaceError::Locked(_, lock) => SpaceError::Locked(name, lock),
+            SpaceError::Closed(_, lock) => SpaceError::Closed(name, lock),
+            other => other,
+        }
+    }
+
     /// A write that a lock holds back.
     pub(crate) fn of_lock(name: Name, lock: Lock) -> SpaceError {
         match lock {

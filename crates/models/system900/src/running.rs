@@ -176,19 +176,21 @@ impl Running {
         value: Value,
     ) -> Result<Option<Routine>, SpaceError> {
         let place = self.memory.place(name)?;
-        let name = self.memory.name_of(place);
-        if name == Name::P(1, UNIT) {
-            if let Some(lock) = refusing(&self.memory, writer, Part::Value, name)? {
+        // A parameter does the same by whatever name it is called; a refusal has the name that was said.
+        let own = self.memory.name_of(place);
+        if own == Name::P(1, UNIT) {
+            if let Some(lock) = refusing(&self.memory, writer, Part::Value, own)? {
                 return Err(SpaceError::of_lock(name, lock));
             }
             let unit = unit(value).ok_or(SpaceError::NoUnit(name))?;
             self.memory.change_unit(unit)?;
             self.outboxes.iter_mut().for_each(Outbox::restart);
         } else {
-            self.memory.enter_as(writer, name, value)?;
+            let entered = self.memory.enter_as(writer, own, value);
+            entered.map_err(|error| error.of_name(name))?;
         }
         self.sent(time_ms, writer, place);
-        Ok(self.routine(time_ms, name, place))
+        Ok(self.routine(time_ms, own, place))
     }
 
     /// Tells receivers and event buffer of a write.

@@ -243,6 +243,32 @@ fn locks_follow_switches() {
     assert_eq!(write(&mut running, Writer::Editor, "P1", "2"), Ok(None));
 }
 
+/// A parameter does the same by its system number; a refusal has the name that was said.
+#[test]
+fn names_say_the_same() {
+    let mut running = running(&[], &[("P1", 0x0001_0000)]);
+    // P8553 is q10000 + 5000 + 1553.
+    assert_eq!(write(&mut running, Writer::Program, "q16553", "12004"), Ok(None));
+    assert_eq!(
+        running.memory().cell(name("P8554")).unwrap().number(),
+        Some(2004.0)
+    );
+    write(&mut running, Writer::Plc, "q1010", "$1").unwrap();
+    write(&mut running, Writer::Plc, "q1000", "1").unwrap();
+    let refused = SpaceError::Locked(name("q10001"), 1);
+    assert_eq!(write(&mut running, Writer::Program, "q10001", "2"), Err(refused));
+    let great = write(&mut running, Writer::Plc, "q10001", "3000000000").unwrap_err();
+    assert_eq!(
+        great.to_string(),
+        "q10001: 3000000000 does not go into four bytes"
+    );
+    let unit = write(&mut running, Writer::Plc, "q1308", "4").unwrap_err();
+    assert_eq!(
+        unit.to_string(),
+        "q1308 is 0 for metric lengths, 1, 2 or 3 for inches"
+    );
+}
+
 /// What is left to the control: q10, messages, their acknowledgement.
 #[test]
 fn routines_are_asked_for() {
