@@ -3,6 +3,7 @@
 use bahn_parameters::equipment;
 use bahn_parameters::{Advice, ControlModel, Definition, MessageCode, MessageId, chapters};
 use bahn_plc::PlcError;
+use bahn_system900::named_message;
 
 use crate::paragraph::{labelled, labelled_lines};
 
@@ -18,6 +19,8 @@ pub fn explained(wanted: &str, model: ControlModel) -> String {
         of_software(model)
     } else if let Some(error) = plc_error(wanted) {
         of_plc_error(error)
+    } else if let Some(message) = of_system900(wanted) {
+        message
     } else if let Some(found) = Found::of(wanted) {
         found.text(model)
     } else {
@@ -206,6 +209,21 @@ fn of_plc_error(error: PlcError) -> String {
     text + &labelled_lines("source:", &chapters(PLC_ERRORS))
 }
 
+/// A message of a System 900 by its number: `M1237`.
+fn of_system900(wanted: &str) -> Option<String> {
+    let has_letter = wanted.trim().starts_with(['M', 'm']);
+    let message = named_message(wanted).filter(|_| has_letter)?;
+    let mut text = format!("M{} {}\n", message.number, message.title);
+    text += &labelled("control:", "System 900");
+    text += &labelled(
+        "kind:",
+        &format!("{} (inferred): it {}", message.kind.id(), message.kind.words()),
+    );
+    text += &labelled("cause:", message.cause);
+    text += &labelled("remedy:", message.remedy);
+    Some(text + &labelled_lines("source:", &[message.source.to_owned()]))
+}
+
 /// Messages, PLC errors and machine parameters that mention all words.
 fn mentions(wanted: &str, model: ControlModel) -> String {
     let wanted: Vec<String> = wanted
@@ -334,6 +352,22 @@ mod tests {
                 let shown = shown.map(|id| ControlModel::FAMILIES.map(|model| id.text(model)));
                 assert!(shown.is_some_and(|texts| texts.contains(&text)), "{text}");
             }
+        }
+    }
+
+    #[test]
+    fn messages_of_a_system900_are_found_by_number() {
+        for text in ["M1237", " m1237 "] {
+            let found = explained(text, ControlModel::Tnc415b);
+            assert!(found.starts_with("M1237 circle dynamics P8852"), "{found}");
+            assert!(
+                found.contains("System 900") && found.contains("aborts the channel"),
+                "{found}"
+            );
+            assert!(found.contains("[002:4586-4589]"), "{found}");
+        }
+        for text in ["1237", "M1239", "M"] {
+            assert_eq!(of_system900(text), None, "{text}");
         }
     }
 

@@ -4,7 +4,9 @@
 //!
 //! Decision: Of P8706 counts the write of a value other than 0; while nothing waits it does nothing
 
-use bahn_system900::{AxisParameter, ChannelParameter, Meaning, Place, Together};
+use bahn_system900::{
+    AxisParameter, ChannelParameter, Channels, Meaning, Place, Together, acknowledges_with_mode,
+};
 
 use crate::answers::bit;
 use crate::channel::{Channel, Mode};
@@ -31,7 +33,7 @@ fn follow_locks(machine: &mut Machine) {
     let automatic = |channel: &&Channel| channel.mode != Mode::Hand;
     let channels = machine.channels.iter().filter(automatic);
     let automatic = channels.fold(0u8, |all, channel| all | bit(channel.number));
-    machine.memory.follow_locks(automatic);
+    machine.memory.update_locks(Channels::from_bits(automatic));
 }
 
 fn notice_axis(machine: &mut Machine, physical: u8, parameter: AxisParameter) {
@@ -88,7 +90,7 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
 
 /// Does something for a channel and all that its networks do it with.
 fn together(machine: &mut Machine, number: u8, what: Together, mut act: impl FnMut(&mut Machine, usize)) {
-    let channels = machine.memory.together(number, what);
+    let channels = bahn_system900::together(&machine.memory, number, what).bits();
     for k in (0..machine.channels.len()).filter(|k| channels >> k & 1 != 0) {
         act(machine, k);
     }
@@ -120,7 +122,7 @@ fn ask_mode(machine: &mut Machine, number: u8, mode: i64) {
             .memory
             .set_channel(number, ChannelParameter::ModeRequest, mode);
         machine.answers.ask_mode(number);
-        if Mode::of(mode) == Some(Mode::Hand) && !machine.memory.acknowledges_apart(number) {
+        if Mode::of(mode) == Some(Mode::Hand) && acknowledges_with_mode(&machine.memory, number) {
             acknowledge(machine, number);
         }
     });

@@ -71,8 +71,8 @@ impl Array {
         self.0.resize(count, Cell::default());
     }
 
-    pub fn cells(&self) -> impl Iterator<Item = (u32, Cell)> {
-        (0..).zip(self.0.iter().copied())
+    pub fn cells_mut(&mut self) -> impl Iterator<Item = &mut Cell> {
+        self.0.iter_mut()
     }
 
     pub fn start(&mut self) {

@@ -33,47 +33,75 @@
 mod array;
 mod axis_block;
 mod channel_block;
+mod channels;
 mod check;
 mod descriptor;
 mod edit;
+mod events;
 mod file;
+mod flash;
 mod live;
+mod lock;
 mod locks;
 mod m_functions;
 mod m_table;
 mod memory;
+mod messages;
 mod name;
+mod networks;
 mod numbered;
 mod numbers;
+mod outbox;
 mod path_data;
+mod programs;
 mod reports;
+mod running;
 mod shared_block;
 mod slots;
+mod start;
 mod status;
 mod table;
 mod tool_blocks;
 mod tools;
+mod units;
 mod value;
 mod zero;
 
 pub use array::{Cell, PARAMETERS_MAX, PARAMETERS_MIN};
 pub use axis_block::{AxisBlock, AxisParameter, Connection};
 pub use channel_block::ChannelParameter;
+pub use channels::Channels;
 pub use check::{Channel, ChannelAxis, Checked, check};
 pub use descriptor::AxisWord;
 pub use edit::Change;
+pub use events::{Depth, Event, EventBuffer, Key, Partner, Record};
 pub use file::DataFile;
+pub use flash::{
+    Flash, FlashError, FlashFunction, FlashScene, Listing, NoFlash, STORED_BYTES_MAX, STORED_MAX, Switches,
+};
 pub use live::Meaning;
+pub use lock::Lock;
+pub use locks::{Locks, Part, Writer, refusing};
 pub use m_functions::{Acts, M_MAX, MFunction, MRule, m_number};
 pub use m_table::MTable;
 pub use memory::{Memory, Place, SpaceError};
+pub use messages::{
+    Message, MessageKind, MessageWord, NamedMessage, Pending, acknowledges_with_mode, named_message,
+    named_messages,
+};
 pub use name::{Name, NoName};
+pub use networks::{Together, network, together};
+pub use outbox::{News, Receiver, Transfer};
 pub use path_data::{PathData, ToolBlock, rounded};
+pub use programs::{NoProgramName, ProgramName, Programs};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
-pub use shared_block::{CouplingBlock, HandwheelBlock, SharedParameter, SpindleBlock, Together};
+pub use running::{AxisCommand, Routine, Running};
+pub use shared_block::{CouplingBlock, HandwheelBlock, SharedParameter, SpindleBlock};
 pub use slots::{LOGICAL_AXES, slots};
+pub use start::{Reset, waits_for_key};
 pub use status::{LOCKS, NoStatus, Receivers, Status};
 pub use table::{Effect, Needs, Row, row, rows};
 pub use tools::{Tool, Tools};
+pub use units::Unit;
 pub use value::{DECIMALS_MAX, Value, ValueError};
 pub use zero::{ZeroPoint, ZeroPoints};

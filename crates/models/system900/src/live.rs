@@ -7,7 +7,7 @@ use crate::array::Cell;
 use crate::axis_block::AxisParameter;
 use crate::channel_block::ChannelParameter;
 use crate::memory::{Memory, Place};
-use crate::numbers::{AXES, AXIS, AXIS_BLOCK, AXIS_OWN, FIXED, FIXED_COUNT};
+use crate::numbers::{AXES, AXIS, AXIS_BLOCK, AXIS_OWN, FIXED, FIXED_COUNT, LOCK_SWITCHES, SHARED};
 use crate::value::DECIMALS_MAX;
 
 /// What a place means to a running control.
@@ -40,7 +40,7 @@ impl Memory {
         if let Some(number) = crate::shared_block::override_at(number) {
             return Meaning::Override(number);
         }
-        if crate::locks::is_switch(number) {
+        if LOCK_SWITCHES.contains(&(number.saturating_sub(SHARED.1) + SHARED.0)) {
             return Meaning::Locks;
         }
         let of_channel = (1..=self.channels()).find_map(|channel| {

@@ -4,12 +4,13 @@
 
 use crate::array::{Array, Cell, PARAMETERS_MAX, PARAMETERS_MIN};
 use crate::descriptor::{Descriptor, WINDOWS};
+use crate::lock::Lock;
 use crate::name::Name;
 use crate::numbers::{
     AXES, AXIS, AXIS_BLOCK, AXIS_OWN, CHANNELS, CHANNELS_MAX, FIXED, FIXED_COUNT, MAPPING_TEST, SHARED,
     SHARED_COUNT,
 };
-use crate::status::{LOCKS, Receivers, Status};
+use crate::status::{Receivers, Status};
 use crate::value::{Value, ValueError};
 
 /// Where a parameter lies.
@@ -97,6 +98,32 @@ pub enum SpaceError {
     /// A parameter lock that is set locks it.
     #[error("{0} is locked by parameter lock {1}")]
     Locked(Name, u8),
+    /// P11308 is given a value that is no unit.
+    #[error("{0} is 0 for metric lengths, 1, 2 or 3 for inches")]
+    NoUnit(Name),
+    /// Another lock that is active closes it.
+    #[error("{0} is locked by {1}")]
+    Closed(Name, Lock),
+}
+
+impl SpaceError {
+    /// The same of the name by which somebody called the parameter.
+    pub(crate) fn of_name(self, name: Name) -> SpaceError {
+        match self {
+            SpaceError::Value(_, error) => SpaceError::Value(name, error),
+            SpaceError::Locked(_, lock) => SpaceError::Locked(name, lock),
+            SpaceError::Closed(_, lock) => SpaceError::Closed(name, lock),
+            other => other,
+        }
+    }
+
+    /// A write that a lock holds back.
+    pub(crate) fn of_lock(name: Name, lock: Lock) -> SpaceError {
+        match lock {
+            Lock::Parameters(lock) => SpaceError::Locked(name, lock),
+            lock => SpaceError::Closed(name, lock),
+        }
+    }
 }
 
 /// The parameters of a control.
@@ -117,7 +144,6 @@ pub struct Memory {
     array: Array,
     /// Of channel, logical axis and place, in this order.
     of_channels: Array,
-    locks: [bool; LOCKS as usize],
 }
 
 impl Default for Memory {
@@ -133,7 +159,6 @@ impl Memory {
         Memory {
             array: Array::new(PARAMETERS_MIN),
             of_channels: Array::new(own),
-            locks: [false; LOCKS as usize],
         }
     }
 
@@ -142,7 +167,6 @@ impl Memory {
         Memory {
             array: Array::new(0),
             of_channels: Array::new(0),
-            locks: [false; LOCKS as usize],
         }
     }
 
@@ -169,6 +193,50 @@ impl Memory {
     /// A system parameter; one that is not there is cleared.
     pub(crate) fn system(&self, number: u32) -> Cell {
         self.array.get(number)
+    }
+
+    /// A parameter that all channels share, by its channel number.
+    pub(crate) fn shared(&self, number: u32) -> Cell {
+        self.array.get(number.saturating_sub(SHARED.0) + SHARED.1)
+    }
+
+    /// What the control itself enters: a number without decimals. Nothing else happens with it.
+    pub(crate) fn set_at(&mut self, place: Place, number: Option<i32>) {
+        let cell = self.at(place);
+        let value = number.map_or(Value::Cleared, |number| Value::Decimal {
+            digits: number.into(),
+            decimals: 0,
+        });
+        // With the decimals of its status; without them where it would not go in.
+        let counted = value.counted(cell.status.decimals());
+        let (mantissa, decimals) = counted.unwrap_or((number, 0));
+        let status = cell.status.with_decimals(decimals).loaded(mantissa.is_some());
+        self.put(
+            place,
+            Cell {
+                mantissa: mantissa.unwrap_or(0),
+                status,
+            },
+        );
+    }
+
+    /// The same for a parameter that all channels share.
+    pub(crate) fn set_shared(&mut self, number: u32, value: i32) {
+        self.set_at(Place::Q(number.saturating_sub(SHARED.0) + SHARED.1), Some(value));
+    }
+
+    /// The four bytes of a system parameter, whatever decimals it has.
+    pub(crate) fn set_word(&mut self, number: u32, mantissa: i32) {
+        let place = Place::Q(number);
+        let status = self.at(place).status.loaded(true);
+        self.put(place, Cell { mantissa, status });
+    }
+
+    /// The same for a name; a parameter that is not there takes nothing.
+    pub(crate) fn set_number(&mut self, name: Name, value: Option<i32>) {
+        if let Ok(place) = self.place(name) {
+            self.set_at(place, value);
+        }
     }
 
     /// Where a name leads now. Descriptors are parameters, too: a change moves the places of a channel.
@@ -326,18 +394,6 @@ impl Memory {
         }
     }
 
-    /// Enters a value as an operator does; who takes notice of it.
-    ///
-    /// # Errors
-    /// When the name leads nowhere, the value does not go in, or a lock that is set locks the parameter.
-    pub fn enter(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
-        let status = self.cell(name)?.status;
-        if let Some(lock) = status.locks().find(|lock| self.is_locked(*lock)) {
-            return Err(SpaceError::Locked(name, lock));
-        }
-        self.write(name, value)
-    }
-
     /// Writes a value past all locks, as the PLC may [002:358-362]; who takes notice of it.
     ///
     /// # Errors
@@ -386,19 +442,6 @@ impl Memory {
         Ok(())
     }
 
-    /// Sets or resets a parameter lock, 1 to 4; others are none.
-    pub fn set_lock(&mut self, lock: u8, set: bool) {
-        let index = usize::from(lock).checked_sub(1);
-        if let Some(slot) = index.and_then(|index| self.locks.get_mut(index)) {
-            *slot = set;
-        }
-    }
-
-    fn is_locked(&self, lock: u8) -> bool {
-        let index = usize::from(lock).checked_sub(1);
-        index.and_then(|index| self.locks.get(index)) == Some(&true)
-    }
-
     /// What the control does when it starts: parameters of channels get the status of the system parameters at
     /// their place [002:8350-8360], and the bit for the operating panel is reset everywhere [002:318-321].
     pub fn start(&mut self) {
@@ -420,14 +463,22 @@ impl Memory {
 
     /// All places that hold something.
     pub fn loaded(&self) -> impl Iterator<Item = Place> {
-        let system = self.array.cells().map(|(number, _)| Place::Q(number));
+        self.places().filter(|place| self.at(*place).status.is_loaded())
+    }
+
+    /// All places.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let count = u32::try_from(self.count()).unwrap_or(u32::MAX);
         let channels = (1..=CHANNELS_MAX).flat_map(|channel| {
             (1..=AXES).flat_map(move |logical| {
                 AXIS_OWN.map(move |offset| Place::OfChannel(channel, logical, offset))
             })
         });
-        system
-            .chain(channels)
-            .filter(|place| self.at(*place).status.is_loaded())
+        (0..count).map(Place::Q).chain(channels)
+    }
+
+    /// What all places hold.
+    pub(crate) fn cells_mut(&mut self) -> impl Iterator<Item = &mut Cell> {
+        self.array.cells_mut().chain(self.of_channels.cells_mut())
     }
 }

@@ -62,3 +62,78 @@ pub const SPINDLES: u32 = 11_640;
 pub const COUPLING_BLOCK: u32 = 20;
 /// Couplings, and spindles.
 pub const COUPLINGS_MAX: u32 = 8;
+
+/// The networks of channels: the first, and its parameters [002:1272-1350].
+pub const NETWORKS: u32 = 900;
+/// Parameters of each.
+pub const NETWORK: u32 = 10;
+/// How many there are.
+pub const NETWORKS_MAX: u32 = 4;
+/// What of channels 1 to 4 is pending, then of 5 to 8 [002:609-628].
+pub const PENDING: u32 = 98;
+/// In a descriptor: who acknowledges messages [002:939-948].
+pub const ACKNOWLEDGEMENT: u32 = 57;
+/// Messages of a channel by their kinds, then axis and information [002:3368-3375].
+pub const MESSAGES: u32 = 8500;
+/// The locks of AUTO [002:3387-3411].
+pub const AUTO_LOCKS: u32 = 8510;
+/// Key switches 1 to 4, and software switch 1 at the eighth place after them [002:5235-5270].
+pub const SWITCHES: u32 = 11_000;
+/// What each of them locks, likewise [002:5318-5365].
+pub const LOCK_DEFINITIONS: u32 = 11_010;
+/// The locks that are active [002:5370-5417].
+pub const ACTIVE_LOCKS: u32 = 11_020;
+/// The unit of lengths [002:6324-6362].
+pub const UNIT: u32 = 11_308;
+/// Stops the event buffer [002:6074-6078].
+pub const SAMPLING: u32 = 11_270;
+/// What the event buffer records beside, of channel 1 [002:6169-6195].
+pub const SAMPLING_OF_CHANNELS: u32 = 11_271;
+/// How many axes the system has [002:376-379].
+pub const AXES_OF_SYSTEM: u32 = 1;
+/// The confirmation of a [`FUNCTION`] [002:503-521].
+pub const CONFIRMATION: u32 = 11;
+/// What the starting routine has cleared: parameters, the same until the user clears it, programs, likewise [002:580-595].
+pub const START_INFO: u32 = 50;
+/// Parameters below it are written back by themselves: q0 to q999 [002:480].
+pub const FIRST_RESTORED: u32 = 1000;
+/// In a descriptor: decimals of positions [002:954-965].
+pub const DECIMALS: u32 = 59;
+/// Number of a channel, then its axes and its last logical axis [002:3447-3451].
+pub const CHANNEL: u32 = 8550;
+/// Coordinate systems of HAND, axes without interpolation or reduction: reset at power-on [002:4020-4048] [002:4793-4828].
+pub const RESET_AT_START: [u32; 5] = [8757, 8758, 8759, 8893, 8894];
+/// Radius, length and offsets of the tool in the spindle, and of the one that is computed with [002:6342-6343].
+pub const TOOL_LENGTHS: [std::ops::Range<u32>; 2] = [8110..8114, 8160..8164];
+/// In the record of a tool: from here on it has the decimals of positions [002:961-963].
+pub const TOOL_VALUES: u32 = 10;
+/// In the parameters of an axis: whether it is a rotary one [002:6905-6916].
+pub const KIND_OF_AXIS: u32 = 1;
+/// In the parameters of an axis: those that are displayed, P12150 to P12169 [002:960].
+pub const DISPLAYS: std::ops::Range<u32> = 150..170;
+/// Key switch 1, P11000 [002:5252-5262].
+pub const KEY_SWITCH: u32 = 11_000;
+/// An entry in the event buffer [002:6197-6198].
+pub const SAMPLE_ENTRY: u32 = 11_279;
+/// Acknowledges the messages of a channel [002:3376-3378].
+pub const ACKNOWLEDGE: u32 = 8508;
+/// Switches and what they lock.
+pub const LOCK_SWITCHES: std::ops::Range<u32> = SWITCHES..ACTIVE_LOCKS;
+/// In the parameters of an axis: its position counts as this [002:7795-7797].
+pub const POSITION: u32 = 110;
+/// In the parameters of an axis: it moves by so much [002:7799-7806].
+pub const RELATIVE: u32 = 111;
+/// In the parameters of an axis: it moves to there [002:7808-7815].
+pub const ABSOLUTE: u32 = 112;
+/// So far behind [`RELATIVE`] and [`ABSOLUTE`] it says that it is there [002:8572-8580].
+pub const REACHED: u32 = 80;
+/// The key that was pressed or released [002:6040-6056].
+pub const KEY: u32 = 11_260;
+/// The second half of the name of the picture; the first one stands before it [002:6059-6068].
+pub const PICTURE: u32 = 11_262;
+/// Counts what is exchanged with the PLC [002:6205-6247].
+pub const DIAGNOSIS: u32 = 11_280;
+/// How often something went to the PLC, then channel, number and content of the last one.
+pub const TO_PLC: u32 = 11_281;
+/// The same of what came from it.
+pub const FROM_PLC: u32 = 11_291;

@@ -23,14 +23,6 @@ SharedParameter {
 }
 }
 
-/// Networks of channels [002:1272-1350].
-const NETWORKS: u32 = 4;
-/// The first network: its modes, its stop, its abort.
-const NETWORK: [u32; 3] = [903, 904, 905];
-/// Parameters of each.
-const NETWORK_BLOCK: u32 = 10;
-/// Acknowledgement of messages, in the descriptor [002:939-948].
-const ACKNOWLEDGEMENT: u32 = 57;
 /// Decimals of positions, in the descriptor [002:954-965].
 const POSITION_DECIMALS: u32 = 59;
 /// Overrides, of which the first four follow a potentiometer [002:6200-6290].
@@ -50,17 +42,6 @@ const RAW_MAX: f64 = 255.0;
 const HANDWHEEL_BLOCK: u32 = 10;
 /// Handwheels [002:6297-6360].
 const HANDWHEELS: u32 = 8;
-
-/// What channels of a network do together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Together {
-    /// They change their mode.
-    Mode,
-    /// They stop.
-    Stop,
-    /// They are broken off.
-    Abort,
-}
 
 /// A coupling of two physical axes as it is written [002:6520-6573].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,34 +129,6 @@ impl Memory {
         self.shared_cell(SharedParameter::CycleTime, 0)
             .number()
             .filter(|ms| *ms > 0.0)
-    }
-
-    /// The channels that do something together with one of them; itself alone without a network. Channels count from 1, bit 0
-    /// is the first.
-    pub fn together(&self, channel: u8, what: Together) -> u8 {
-        let [mode, stop, abort] = NETWORK;
-        let entry = match what {
-            Together::Mode => mode,
-            Together::Stop => stop,
-            Together::Abort => abort,
-        };
-        let own = 1u8.checked_shl(u32::from(channel.saturating_sub(1))).unwrap_or(0);
-        (0..NETWORKS).fold(own, |all, network| {
-            let bits = self
-                .system_cell(entry + NETWORK_BLOCK * network)
-                .bits()
-                .unwrap_or(0);
-            let [channels, ..] = bits.to_le_bytes();
-            match channels & own != 0 {
-                true => all | channels,
-                false => all,
-            }
-        })
-    }
-
-    /// Messages of a channel go by P8508 alone, not with the change to HAND [002:939-948].
-    pub fn acknowledges_apart(&self, channel: u8) -> bool {
-        self.descriptor(channel).entry(ACKNOWLEDGEMENT).whole() == Some(1)
     }
 
     /// Decimals of positions that the control writes [002:954-965].

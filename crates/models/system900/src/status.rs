@@ -10,6 +10,9 @@ use crate::name::repeated;
 /// Bits of the status byte 4 for decimals.
 const DECIMALS: u8 = 0b1111;
 
+/// The bit of the status byte 1 for lengths.
+const LENGTH: u8 = 1 << 4;
+
 /// Parameter locks that a status names.
 pub const LOCKS: u8 = 4;
 
@@ -118,6 +121,18 @@ impl Status {
     pub(crate) fn started(self) -> Status {
         let [first, second, third, fourth] = self.0;
         Status([first, second & !0b100, third, fourth])
+    }
+
+    /// With or without the inch bit.
+    pub(crate) fn with_length(self, is_length: bool) -> Status {
+        let [first, rest @ ..] = self.0;
+        let [second, third, fourth] = rest;
+        Status([
+            first & !LENGTH | if is_length { LENGTH } else { 0 },
+            second,
+            third,
+            fourth,
+        ])
     }
 
     pub(crate) fn with_decimals(self, decimals: u8) -> Status {

@@ -130,13 +130,15 @@ impl Row {
         self.plc.split(", ").filter(|marker| !marker.is_empty())
     }
 
+    /// The numbers that it explains.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = u32> + use<> {
+        let (Name::Q(first) | Name::P(_, first)) = self.first;
+        first..=self.last
+    }
+
     fn names(&self) -> impl Iterator<Item = Name> {
-        let (first, last) = (self.first, self.last);
-        let (begin, is_q) = match first {
-            Name::Q(number) => (number, true),
-            Name::P(_, number) => (number, false),
-        };
-        (begin..=last).map(move |number| match is_q {
+        let is_q = matches!(self.first, Name::Q(_));
+        self.numbers().map(move |number| match is_q {
             true => Name::Q(number),
             false => Name::P(1, number),
         })

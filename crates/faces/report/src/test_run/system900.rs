@@ -9,7 +9,7 @@ use bahn_host::Machine900;
 use bahn_host::files::NcFolder;
 use bahn_interpreter900::Reader900;
 use bahn_motion::{Limits, SERVO_WINDOW_S};
-use bahn_path::{Axis, PerAxis};
+use bahn_path::{Axis, PerAxis, Position};
 use bahn_program::{DinLanguage, Program};
 use bahn_system900::{AxisBlock, ChannelParameter, Memory, slots};
 
@@ -64,7 +64,8 @@ impl System900 {
     pub fn reader(&self, program: &Program) -> Reader900 {
         let beside = Arc::new(NcFolder::of(program.name().as_ref()));
         let channel = self.channel(program);
-        let mut reader = Reader900::new(program.name(), &program.to_bytes(), channel, beside);
+        let bytes = program.to_bytes();
+        let mut reader = Reader900::new(program.name(), &bytes, channel, Position::ZERO, beside);
         reader.give_memory(self.memory.clone());
         reader
     }

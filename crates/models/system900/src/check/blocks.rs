@@ -4,11 +4,11 @@ use bahn_text::Diagnostic;
 
 use crate::descriptor::{Descriptor, WINDOWS};
 use crate::file::DataFile;
-use crate::numbers::{BLOCKS_FROM, CHANNELS, FIXED_COUNT, TOOLS, ZERO_POINTS};
+use crate::numbers::{BLOCKS_FROM, CHANNELS, DECIMALS, FIXED_COUNT, TOOLS, ZERO_POINTS};
 use crate::{tools, zero};
 
 /// The numbers of a descriptor that count something: entry, least, most.
-const COUNTS: [(u32, i64, i64); 11] = [
+const COUNTS: [(u32, i64, i64); 12] = [
     (3, 1, 7000),
     (5, 1, 10_000),
     (7, 1, 10_000),
@@ -20,6 +20,7 @@ const COUNTS: [(u32, i64, i64); 11] = [
     (TOOLS + 2, 0, COUNT_MAX),
     (TOOLS + 3, 1, COUNT_MAX),
     (TOOLS + 4, 0, COUNT_MAX),
+    (DECIMALS, 0, 9),
 ];
 
 /// No array has more parameters than a user block.
@@ -50,11 +51,8 @@ pub(super) fn of_array(file: &DataFile) -> Vec<Diagnostic> {
     for channel in 1..=file.memory().channels() {
         let descriptor = file.memory().descriptor(channel);
         faults.extend(counts(file, &descriptor));
-        let found = of_channel(&descriptor, channel);
-        if found.is_empty() {
-            faults.extend(no_blocks(file, &descriptor, channel));
-        }
-        blocks.extend(found);
+        faults.extend(no_block(file, &descriptor, channel));
+        blocks.extend(of_channel(&descriptor, channel));
         faults.extend(contents(file, channel));
     }
     let count = u32::try_from(file.memory().count()).unwrap_or(u32::MAX);
@@ -74,17 +72,28 @@ pub(super) fn of_array(file: &DataFile) -> Vec<Diagnostic> {
     faults
 }
 
-/// A channel of which nobody says where its parameters lie, at the number of channels. A file without that holds changes
-/// alone.
-fn no_blocks(file: &DataFile, descriptor: &Descriptor<'_>, channel: u8) -> Option<Diagnostic> {
+/// A channel of which nobody says where its parameters lie, at the number of channels; at that which is there where the
+/// descriptor says half of it, or has other blocks alone. A file that has none of it holds changes alone.
+fn no_block(file: &DataFile, descriptor: &Descriptor<'_>, channel: u8) -> Option<Diagnostic> {
     let [first, ..] = WINDOWS;
+    let is_there = |entry: u32| descriptor.entry(entry).bits().is_some();
+    if is_there(first.entry) && is_there(first.entry + 1) {
+        return None;
+    }
+    let entries = WINDOWS.iter().flat_map(|window| [window.entry, window.entry + 1]);
+    let numbers = entries
+        .filter(|entry| is_there(*entry))
+        .map(|entry| descriptor.number(entry));
+    let mut places = numbers
+        .chain([CHANNELS])
+        .map(|number| file.span(number))
+        .filter(|place| place.line > 0);
     let begin = descriptor.number(first.entry);
     let message = format!(
         "q{begin} and q{} do not say where the parameters of channel {channel} lie",
         begin + 1
     );
-    let place = file.span(CHANNELS);
-    (place.line > 0).then(|| Diagnostic::warning(place, message))
+    places.next().map(|place| Diagnostic::warning(place, message))
 }
 
 /// Counts outside their range.

@@ -147,6 +147,9 @@ fn counts_have_a_range() {
         ("q174: 10", "0 to 9"),
         ("q176: -5", "0 to 10000"),
         ("q178: 0", "1 to 10000"),
+        ("q177: -1", "0 to 10000"),
+        ("q179: 10001", "0 to 10000"),
+        ("q159: 10", "0 to 9"),
     ] {
         let found = errors(&[line]);
         let number = line.split(':').next().unwrap();
@@ -295,6 +298,15 @@ fn a_channel_without_descriptor_is_doubtful() {
         warnings,
         ["1:5: q302 and q303 do not say where the parameters of channel 3 lie"]
     );
+    // Half a block, or another one alone, is none.
+    let half = |lines: &str| {
+        let checked = check(&DataFile::read(lines.as_bytes()));
+        checked.faults.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let said = "q102 and q103 do not say where the parameters of channel 1 lie";
+    assert_eq!(half("q4: 1\nq102: 10000\n"), [format!("2:7: {said}")]);
+    assert_eq!(half("q4: 1\nq103: 100\n"), [format!("2:7: {said}")]);
+    assert_eq!(half("q104: 10000\nq105: 100\n"), [format!("1:7: {said}")]);
     // A file may hold changes alone.
     let alone = check(&DataFile::read(b"q110: $00010058\nP12004: 8000\n"));
     assert_eq!(alone.errors().count(), 0);

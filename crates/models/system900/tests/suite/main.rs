@@ -8,8 +8,15 @@
 
 mod checks;
 mod control;
+mod events;
 mod files;
+mod flash;
 mod laws;
 mod layout;
+mod locks;
 mod memory;
+mod messages;
+mod portal;
+mod running;
 mod table;
+mod units;

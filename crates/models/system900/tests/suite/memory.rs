@@ -3,7 +3,7 @@
 use bahn_system900::{Memory, Name, Place, SpaceError, Status, Value, ValueError};
 
 /// A memory with some parameters entered.
-fn memory(entries: &[(&str, &str)]) -> Memory {
+pub fn memory(entries: &[(&str, &str)]) -> Memory {
     let mut memory = Memory::new();
     for (name, value) in entries {
         enter(&mut memory, name, value).unwrap();
@@ -11,7 +11,7 @@ fn memory(entries: &[(&str, &str)]) -> Memory {
     memory
 }
 
-fn name(text: &str) -> Name {
+pub fn name(text: &str) -> Name {
     text.parse().unwrap()
 }
 
