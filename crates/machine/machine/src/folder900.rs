@@ -11,12 +11,11 @@ use crate::reader::{Reader, Section};
 ///
 /// ```
 /// use bahn_machine::Folder900;
-/// let text = "name = 'portal'\ncontrol = 'system900'\nparameters = 'parameters.q'\nanswers = ['mode', 'lunch']";
+/// let text = "name = 'portal'\ncontrol = 'system900'\nparameters = 'parameters.q'\nbeam = 2";
 /// assert_eq!(Folder900::named_at(text).map(|span| span.line), Some(2));
 /// let (folder, faults) = Folder900::read(text);
 /// assert_eq!(folder.programs, "programs");
-/// let said = "4:20: `lunch` is no standard answer; there are enable, mode, start, m, tools";
-/// assert!(faults.iter().any(|fault| fault.to_string() == said));
+/// assert!(faults[0].to_string().starts_with("4:1: unknown key `beam` here"));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folder900 {
@@ -24,52 +23,13 @@ pub struct Folder900 {
     pub name: String,
     /// The data file with the parameters.
     pub parameters: String,
-    /// Description of the simulated machine, or [`Folder900::IDEAL`].
-    pub plant: Option<String>,
     /// Folder of part programs and cycles.
     pub programs: String,
-    /// Folder of what survives power-off.
-    pub state: String,
-    /// The answers that stand for a PLC program; all of them without the key.
-    pub answers: Vec<Answer>,
-}
-
-/// A standard answer: what stands for the PLC program where a folder has none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// The channel and its axes are enabled: P8700, P8701, and P8709 when all axes are referenced.
-    Enable,
-    /// A wanted operating mode comes: P8683 goes to P8703.
-    Mode,
-    /// A wanted start comes: P8684 goes to P8704.
-    Start,
-    /// M functions with stop are done: P8706.
-    M,
-    /// M6 changes the tool: P8047, then P8045.
-    Tools,
-}
-
-impl Answer {
-    /// All of them with their names in the folder.
-    pub const ALL: [(Answer, &str); 5] = [
-        (Answer::Enable, "enable"),
-        (Answer::Mode, "mode"),
-        (Answer::Start, "start"),
-        (Answer::M, "m"),
-        (Answer::Tools, "tools"),
-    ];
-
-    fn of_name(name: &str) -> Option<Answer> {
-        let found = Answer::ALL.into_iter().find(|(_, own)| *own == name);
-        found.map(|(answer, _)| answer)
-    }
 }
 
 impl Folder900 {
     /// What `control` says.
     const CONTROL: &str = "system900";
-    /// A plant whose axes go where they are led, without delay.
-    pub const IDEAL: &str = "ideal";
 
     /// Where the text of a `machine.toml` says that it describes a machine of this family, however many faults it has; `None`
     /// for one of a TNC.
@@ -91,7 +51,6 @@ impl Folder900 {
             }
             root.text(key).unwrap_or_default().to_owned()
         };
-        let optional = |key, usual: &str| root.text(key).unwrap_or(usual).to_owned();
         if root
             .text("control")
             .is_some_and(|control| control != Folder900::CONTROL)
@@ -107,13 +66,7 @@ impl Folder900 {
         let folder = Folder900 {
             name: needed("name"),
             parameters: needed("parameters"),
-            plant: root.text("plant").map(str::to_owned),
-            programs: optional("programs", "programs"),
-            state: optional("state", "state"),
-            answers: match root.has("answers") {
-                true => answers(&root),
-                false => Answer::ALL.map(|(answer, _)| answer).to_vec(),
-            },
+            programs: root.text("programs").unwrap_or("programs").to_owned(),
         };
         root.finish();
         (folder, reader.faults())
@@ -121,19 +74,4 @@ impl Folder900 {
 
     /// The name of the file in the folder.
     pub const FILE: &str = MachineFolder::FILE;
-}
-
-fn answers(root: &Section) -> Vec<Answer> {
-    let mut found = Vec::new();
-    for (at, name) in root.texts("answers") {
-        match Answer::of_name(name) {
-            Some(answer) => found.push(answer),
-            None => {
-                let names = Answer::ALL.map(|(_, name)| name).join(", ");
-                root.reader
-                    .fault(at, format!("`{name}` is no standard answer; there are {names}"));
-            }
-        }
-    }
-    found
 }

@@ -28,6 +28,8 @@ Examples:
       With a tool table, from a start position; the report as JSON.
   bahn test part.nc --start X0,Y0,Z0
       A program of DIN 66025, as this control executes it; docs/din66025.md says what of it.
+  bahn test machines/portal900/programs/P1000.900 --machine machines/portal900
+      A program of a System 900, which a machine with that control alone runs; docs/system900.md.
   bahn test parts/ --report shelf.html
       All programs of a folder and the folders in it on all cores: a table, and a page with the pictures.
   bahn test parts/ --report shelf.csv --comma --density 7.85
