@@ -342,6 +342,7 @@ fn of_the_documents() {
         "docs/system900.md",
         "docs/technology.md",
         "docs/torture.md",
+        "machines/portal900/README.md",
     ] {
         let folder = desk();
         digitizing(&folder);
