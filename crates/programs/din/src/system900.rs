@@ -22,6 +22,7 @@ mod block;
 mod examine;
 mod line;
 mod listing;
+mod plain;
 mod program;
 mod rules;
 mod table;

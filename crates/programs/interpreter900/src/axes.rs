@@ -25,7 +25,7 @@ pub struct ChannelAxis {
 pub struct ChannelAxes(PerAxis<Option<ChannelAxis>>);
 
 /// What axes without a letter of their own on the path get.
-const FREE: [Axis; 9] = [
+const FREE: &[Axis] = &[
     Axis::U,
     Axis::V,
     Axis::W,
@@ -75,7 +75,7 @@ impl ChannelAxes {
                 let slot = match (is_plain, own) {
                     (true, own) => own,
                     (false, Some(_)) => None,
-                    (false, None) => FREE.into_iter().find(|slot| axes.0[*slot].is_none()),
+                    (false, None) => FREE.iter().copied().find(|slot| axes.0[*slot].is_none()),
                 };
                 if let Some(slot) = slot {
                     axes.0[slot] = Some(ChannelAxis {

@@ -61,16 +61,19 @@ impl Hole {
     }
 }
 
-impl Run {
+/// The state of a run that makes holes.
+pub(crate) struct Drill<'a>(pub &'a mut Run);
+
+impl Drill<'_> {
     /// Moves the third axis of the plane.
     fn along(&mut self, to: f64, feed: Option<f64>, extra: Extra) {
-        let normal = self.modal.plane.normal;
-        let mut end = self.here;
-        end[normal] = self.modal.axis_to_machine(normal, to);
-        if end[normal] == self.here[normal] && extra.functions.is_empty() && extra.dwell_s == 0.0 {
+        let normal = self.0.modal.plane.normal;
+        let mut end = self.0.here;
+        end[normal] = self.0.modal.axis_to_machine(normal, to);
+        if end[normal] == self.0.here[normal] && extra.functions.is_empty() && extra.dwell_s == 0.0 {
             return;
         }
-        self.push(
+        self.0.push(
             Curve::Line,
             end,
             feed.map_or(FeedRate::Rapid, FeedRate::Programmed),
@@ -122,7 +125,7 @@ impl Run {
     }
 
     fn tap(&mut self, hole: &Hole) -> Result<(), Refusal> {
-        let [rpm, ..] = self.modal.speeds;
+        let [rpm, ..] = self.0.modal.speeds;
         if rpm <= 0.0 {
             return wrong("G84 needs the speed of the spindle, S");
         }
@@ -179,12 +182,12 @@ impl Run {
     /// Holes at the places of a pattern.
     pub fn drill_pattern(&mut self, pattern: u16, word: u16, data: &PathData) -> Result<(), Refusal> {
         for [x, y] in places(pattern, data)? {
-            let mut program = self.modal.to_program(&self.here);
-            self.modal.plane.set(&mut program, [x, y]);
-            let mut end = self.modal.to_machine(&program);
-            let normal = self.modal.plane.normal;
-            end[normal] = self.here[normal];
-            self.push(Curve::Line, end, FeedRate::Rapid, Extra::default());
+            let mut program = self.0.modal.to_program(&self.0.here);
+            self.0.modal.plane.set(&mut program, [x, y]);
+            let mut end = self.0.modal.to_machine(&program);
+            let normal = self.0.modal.plane.normal;
+            end[normal] = self.0.here[normal];
+            self.0.push(Curve::Line, end, FeedRate::Rapid, Extra::default());
             self.drill(word, data)?;
         }
         Ok(())

@@ -8,6 +8,7 @@ use bahn_path::{Barrier, BlockRef};
 use bahn_system900::{Memory, Name};
 
 use crate::axes::ChannelAxes;
+use crate::drilling::Drill;
 use crate::functions::{self, Then};
 use crate::g_functions::{self, Once};
 use crate::motion;
@@ -240,8 +241,8 @@ impl Reader900 {
         let is_due = once.drills.is_some() || once.pattern.is_some() || moved;
         if let Some(word) = drilling.filter(|_| is_due) {
             match (self.files.cycle(word), once.pattern) {
-                (None, Some(pattern)) => self.run.drill_pattern(pattern, word, &data)?,
-                (None, None) => self.run.drill(word, &data)?,
+                (None, Some(pattern)) => Drill(&mut self.run).drill_pattern(pattern, word, &data)?,
+                (None, None) => Drill(&mut self.run).drill(word, &data)?,
                 (Some(_), Some(pattern)) => {
                     return Err(Refusal::NotYet(format!("G{pattern} with the cycle Z{word}.900")));
                 }

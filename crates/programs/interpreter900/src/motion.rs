@@ -89,7 +89,7 @@ pub(crate) fn of(
     let has_centre = words.centre.iter().any(Option::is_some);
     let is_circle = matches!(modal.motion, 2 | 3);
     let moves = words.has_axes || words.polar.iter().any(Option::is_some);
-    if !moves && !(is_circle && has_centre) {
+    if !(moves || is_circle && has_centre) {
         return match has_centre || words.radius.is_some() {
             true => wrong("I, J, K and R belong to a circle with G2 or G3"),
             false => Ok(None),

@@ -126,7 +126,7 @@ impl Reader900 {
     }
 
     /// The journal of writes, where states are kept.
-    pub(crate) fn journal<'a>(kept: bool, journal: &'a mut Journal) -> Option<&'a mut Journal> {
+    pub(crate) fn journal(kept: bool, journal: &mut Journal) -> Option<&mut Journal> {
         kept.then_some(journal)
     }
 

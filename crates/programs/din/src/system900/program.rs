@@ -10,6 +10,7 @@ use bahn_text::{Diagnostic, Severity, Span};
 
 use super::block::{self, Block, MFunction, Reading, Word, WordKind};
 use super::line;
+use super::plain;
 use super::rules;
 use crate::block::number;
 use crate::line::{Glyph, LineFault, fault_at};
@@ -41,7 +42,9 @@ impl Program {
         let source = Source::from_bytes(name, bytes);
         let mut numbers: Vec<(u32, u32)> = Vec::new();
         for line in 1..=source.line_count() {
-            let own = name_of(source.line(line)).and_then(|name| name.get(1..)?.parse().ok());
+            let text = source.line(line);
+            let own =
+                plain::number(text).or_else(|| name_of(text).and_then(|name| name.get(1..)?.parse().ok()));
             numbers.extend(own.map(|number| (number, line)));
         }
         let is_ascending = numbers.windows(2).all(|pair| match pair {
@@ -110,6 +113,9 @@ impl Program {
     /// # Errors
     /// What is wrong with it, where no run may execute it.
     pub fn block(&self, line: u32) -> Option<Result<Block, Vec<Fault>>> {
+        if let Some(block) = plain::block(line, self.line(line)) {
+            return Some(Ok(block));
+        }
         let reading = self.read(line)?;
         Some(match reading.faults.is_empty() {
             true => Ok(reading.block),

@@ -103,7 +103,7 @@ fn feeds_follow_their_parameters() {
 
 /// P8858: 0 G0 ends with exact stop, 2 as G1 does. G8 stops one block, G28 all, but for those with G9.
 #[test]
-fn exact_stops_stand_behind_their_movement() {
+fn exact_stops_come_after_their_movement() {
     let stops = |text: &str, more: &str| {
         let ran = ran_with(text, more);
         let holds = ran.elements.iter().filter(|element| element.curve == Curve::Hold);
