@@ -1,11 +1,14 @@
 //! The zero points of a channel: where each lies [002:978-1144].
+//!
+//! Decision: The sum, group 0, is what the control adds. A write to a shift computes it anew; a write to the sum itself stands until
+//! then
 
 use std::fmt;
 
 use serde::Serialize;
 
 use crate::array::number_or_none;
-use crate::memory::Memory;
+use crate::memory::{Memory, Place};
 use crate::name::Name;
 use crate::numbers::ZERO_POINTS;
 
@@ -94,6 +97,22 @@ impl Layout {
         parts.into_iter().map(u64::from).fold(1, u64::saturating_mul)
     }
 
+    /// The parameter of an axis of a zero point; everything counts from 0.
+    fn place(&self, [area, group, point, axis]: [u32; 4]) -> u32 {
+        let at = (area * self.groups + group) * self.points + point;
+        self.first + at * self.axes + axis
+    }
+
+    /// What a parameter of the array is: area, group, point, axis, from 0; `None` of another one.
+    fn of_parameter(&self, p: u32) -> Option<[u32; 4]> {
+        let at = p
+            .checked_sub(self.first)
+            .filter(|at| u64::from(*at) < self.count())?;
+        let (at, axis) = (at / self.axes, at % self.axes);
+        let (at, point) = (at / self.points, at % self.points);
+        Some([at / self.groups, at % self.groups, point, axis])
+    }
+
     fn cell(&self, memory: &Memory, channel: u8, p: u32) -> ZeroPoint {
         let at = p - self.first;
         let (at, axis) = (at / self.axes, at % self.axes);
@@ -119,6 +138,22 @@ fn point_name(point: u32) -> String {
             let hundred = further / FURTHER_POINTS + 1;
             format!("G{}", 100 * hundred + 54 + further % FURTHER_POINTS)
         }
+    }
+}
+
+impl Memory {
+    /// The sum of the shifts of an axis, after one of them was written: where it lies, the sum, its decimals. `None` after any
+    /// other write.
+    pub fn sum_of_shifts(&self, name: Name) -> Option<(Place, f64, u8)> {
+        let (channel, p) = name.of_channel()?;
+        let layout = Layout::of(self, channel)?;
+        let [area, _, point, axis] = layout.of_parameter(p).filter(|[_, group, ..]| *group > 0)?;
+        let cell = |group| self.cell(Name::P(channel, layout.place([area, group, point, axis])));
+        let shifts = || (1..layout.groups).filter_map(|group| cell(group).ok());
+        let decimals = shifts().map(|cell| cell.status().decimals()).max()?;
+        let sum = shifts().filter_map(|cell| cell.number()).sum();
+        let place = self.place(Name::P(channel, layout.place([area, 0, point, axis])));
+        Some((place.ok()?, sum, decimals))
     }
 }
 

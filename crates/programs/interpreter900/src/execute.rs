@@ -91,7 +91,8 @@ impl Reader900 {
         self.run.has_begun = true;
         let data = memory.path_data(self.channel);
         self.run.modal.zero_point = data.first_zero_point();
-        let start = data.start_block().filter(|block| *block > 0.0);
+        let start = data.start_block();
+        let start = start.filter(|block| *block > 0.0 && !self.run.is_placed);
         self.run.modal.refresh(memory, self.channel, &self.axes)?;
         self.run.is_stale = false;
         if let Some(number) = start {

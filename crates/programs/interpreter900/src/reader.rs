@@ -276,7 +276,7 @@ impl Reader for Reader900 {
         self.run.frames = vec![Frame::new(0)];
         self.run.queue.clear();
         self.run.here = self.run.position;
-        self.run.has_begun = true;
+        self.run.is_placed = true;
         self.run.is_stale = true;
         self.run.idle = 0;
         self.jump(block);

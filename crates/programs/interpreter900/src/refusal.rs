@@ -32,7 +32,7 @@ impl Refusal {
                 Cause::default(),
             ),
             Refusal::Numbered(number, text) => (
-                Message::Numbered(format!("{number} {text}")),
+                Message::Numbered(format!("M{number} {text}")),
                 String::new(),
                 Cause::default(),
             ),

@@ -61,6 +61,8 @@ pub(crate) struct Run {
     pub is_stale: bool,
     /// The first block was looked for.
     pub has_begun: bool,
+    /// Somebody has said where it begins: P8801 does not.
+    pub is_placed: bool,
 }
 
 /// So many blocks in a row without a movement are no program.
@@ -85,6 +87,7 @@ impl Run {
             idle: 0,
             is_stale: true,
             has_begun: false,
+            is_placed: false,
         }
     }
 

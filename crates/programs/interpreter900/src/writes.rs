@@ -40,11 +40,19 @@ pub(crate) fn write(
     name: Name,
     value: Written,
 ) -> Result<(), Refusal> {
-    if let Some(journal) = journal {
-        let place = memory.place(name)?;
-        journal.push((place, memory.at(place)));
-    }
+    let mut journal = journal;
+    let mut keep = |memory: &Memory, place: Place| {
+        if let Some(journal) = &mut journal {
+            journal.push((place, memory.at(place)));
+        }
+    };
+    keep(memory, memory.place(name)?);
     memory.write(name, value)?;
+    // A shift of a zero point counts in the sum of its axis.
+    if let Some((place, sum, decimals)) = memory.sum_of_shifts(name) {
+        keep(memory, place);
+        memory.store(place, Some(sum), decimals);
+    }
     Ok(())
 }
 

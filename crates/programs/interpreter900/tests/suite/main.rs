@@ -6,6 +6,7 @@
     reason = "a helper that panics fails its test"
 )]
 
+mod by_the_manual;
 mod drilling;
 mod functions;
 mod going_back;

@@ -7,7 +7,7 @@ use bahn_path::{Axis, ElementSource, Position, Step};
 use bahn_reader::Reader;
 use bahn_text::MemoryFiles;
 
-use crate::support::reader;
+use super::support::reader;
 
 const PROGRAM: &str = "N10 G1 X1 F100\n\nN20 X2\nN30 X3\nN40 M30\n";
 

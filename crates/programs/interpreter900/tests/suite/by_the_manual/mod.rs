@@ -1,0 +1,9 @@
+//! The manual's examples, one after the other, on a channel with three axes.
+
+mod cycles;
+mod flow;
+mod functions;
+mod paths;
+mod reader;
+mod support;
+mod zero_points;
