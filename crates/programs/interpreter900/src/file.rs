@@ -13,14 +13,44 @@ pub(crate) struct File {
     pub cycle: Option<u16>,
     pub text: Arc<Program>,
     pub words: Arc<system900::Program>,
+    /// The block of each line, where the text counts every line that is not empty as one.
+    blocks: Arc<Vec<u32>>,
+}
+
+/// The blocks of lines by counting; empty where the text counts otherwise.
+fn counted(text: &Program, words: &system900::Program) -> Vec<u32> {
+    let mut blocks = vec![0];
+    let mut last = [(0, 0); 2];
+    for line in 1..=words.line_count() {
+        let before = blocks.last().copied().unwrap_or_default();
+        let is_block = !words.line(line).trim().is_empty();
+        blocks.push(before + u32::from(is_block));
+        if is_block {
+            last = [
+                (line, before + 1),
+                if before % 97 == 0 {
+                    (line, before + 1)
+                } else {
+                    last[1]
+                },
+            ];
+        }
+    }
+    let fits = last
+        .iter()
+        .all(|(line, block)| *block == 0 || text.line_of(*block) == *line);
+    if fits { blocks } else { Vec::new() }
 }
 
 impl File {
     pub fn new(cycle: Option<u16>, name: &str, bytes: &[u8]) -> File {
+        let text = Program::from_bytes(name, bytes.to_vec());
+        let words = system900::Program::from_bytes(name, bytes);
         File {
             cycle,
-            text: Arc::new(Program::from_bytes(name, bytes.to_vec())),
-            words: Arc::new(system900::Program::from_bytes(name, bytes)),
+            blocks: Arc::new(counted(&text, &words)),
+            text: Arc::new(text),
+            words: Arc::new(words),
         }
     }
 
@@ -31,6 +61,12 @@ impl File {
 
     /// The block that stands in a line; each line that is not empty is one, from 1. `near` is one before it.
     pub fn block_of(&self, line: u32, near: u32) -> u32 {
+        let before = line
+            .checked_sub(1)
+            .and_then(|before| self.blocks.get(before as usize));
+        if let (Some(block), Some(before)) = (self.blocks.get(line as usize), before) {
+            return if block == before { block + 1 } else { *block };
+        }
         if self.text.line_of(near) == line {
             return near;
         }
