@@ -31,10 +31,9 @@ pub fn language() -> Language {
             None => Some(memory),
         },
         take: |reader| Reader900::of_mut(reader)?.take_memory().map(|memory| *memory),
-        branch: |reader, sequence, target, position| {
-            if let Some(reader) = Reader900::of_mut(reader) {
-                reader.branch(sequence, target, position);
-            }
+        branch: |reader, sequence, target, position| match Reader900::of_mut(reader) {
+            Some(reader) => reader.branch(sequence, target, position),
+            None => reader.goto(target),
         },
         number: |reader, block| Reader900::of(reader).map_or(block.block, |reader| reader.number_of(block)),
     }

@@ -6,13 +6,13 @@ use bahn_interpreter900::Reader900;
 use bahn_path::Position;
 use bahn_text::MemoryFiles;
 
-use crate::support::Rig;
+use crate::support::{Rig, axis};
 
 /// Lines, a circle, a real-time parameter, M functions with stop, a branch that is not taken, a dwell: the program writes and
 /// reads parameters of the control while it runs.
 #[test]
 fn a_program_runs_with_the_parameters_of_its_control() {
-    let mut rig = Rig::on("P11051: $10050601\nP50: 0 $00010004\n");
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11051: $10050601\nP50: 0 $00010004\n"));
     let text = b"N10 G1 X50 Y10 F3000\nN20 X60 M6\nN30 G2 X80 I10 J0 F1000\nN40 G1 P50:12.5 P51:7 X:P51\n\
         N50 M7.70 Y30\nN60 Y40\nN70 G0 X0 Y0 M5\nN80 G4 X0.5\nN90 M30\n";
     let beside = Arc::new(MemoryFiles::default());
