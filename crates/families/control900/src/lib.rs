@@ -42,6 +42,7 @@ mod cycle;
 mod enable;
 mod hand;
 mod kinematics;
+mod language;
 mod machine;
 mod message;
 mod monitor;
@@ -54,7 +55,8 @@ mod units;
 
 pub use channel::Mode;
 pub use control::Control900;
+pub use language::{Language, language};
 pub use message::{Kind, Message};
-pub use setup::{Language, Setup, StandardAnswers};
+pub use setup::{Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
 pub use units::ideal_machine;

@@ -8,8 +8,9 @@ use bahn_system900::{ChannelParameter, Memory};
 use crate::answers::Answers;
 use crate::axis_state::{AxisPlace, Hand, Watch};
 use crate::channel::{Channel, Site, Written};
+use crate::language::Language;
 use crate::message::{Kind, Message, Messages};
-use crate::setup::{Language, Setup};
+use crate::setup::Setup;
 use crate::transfer::Transfers;
 use crate::units;
 

@@ -1,8 +1,6 @@
 //! What a control is told beside its parameters.
 
-use bahn_path::{BlockRef, Position};
-use bahn_reader::Reader;
-use bahn_system900::Memory;
+use crate::language::{Language, language};
 
 /// What answers in the place of a PLC, one PLC cycle after its cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,20 +42,6 @@ impl StandardAnswers {
     };
 }
 
-/// A language of programs that read and write parameters: while a program is read it has all of them, and gives them back.
-#[derive(Clone, Copy, Debug)]
-pub struct Language {
-    /// Gives a program the parameters; they come back when it is of another language.
-    pub give: fn(&mut dyn Reader, Memory) -> Option<Memory>,
-    /// Takes them back; `None` when it has none.
-    pub take: fn(&mut dyn Reader) -> Option<Memory>,
-    /// A program goes back before the block of a place in the order of execution, and on at a block of the same program, from
-    /// where the axes stand.
-    pub branch: fn(&mut dyn Reader, u64, u32, &Position),
-    /// The number of a block as programs write it.
-    pub number: fn(&dyn Reader, BlockRef) -> u32,
-}
-
 /// What a control is told beside its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup {
@@ -70,12 +54,12 @@ pub struct Setup {
 }
 
 impl Default for Setup {
-    /// All standard answers, in a cycle of 10 ms (inferred).
+    /// All standard answers, in a cycle of 10 ms (inferred), and the language of the control.
     fn default() -> Setup {
         Setup {
             answers: StandardAnswers::ALL,
             plc_us: 10_000,
-            language: None,
+            language: Some(language()),
         }
     }
 }

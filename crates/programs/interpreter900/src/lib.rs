@@ -32,6 +32,7 @@ mod functions;
 mod g_functions;
 mod modal;
 mod motion;
+mod numbers;
 mod reader;
 mod refusal;
 mod run;

@@ -8,6 +8,7 @@ mod support;
 mod axes;
 mod by_hand;
 mod couplings;
+mod language;
 mod m_functions;
 mod monitors;
 mod programs;

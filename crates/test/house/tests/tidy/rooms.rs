@@ -46,6 +46,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "parameters",
             "system900",
             "reader",
+            "interpreter900",
             "motion",
             "servo",
             "kernel",
