@@ -57,7 +57,7 @@ fn a_radius_is_the_shorter_arc_unless_negative() {
 #[test]
 fn ends_beside_the_circle_are_refused_as_1238() {
     let text = "F100 G3 X10.01 Y10 J10\n";
-    assert!(fault(text).starts_with("1238 "));
+    assert!(fault(text).starts_with("M1238 "));
     assert_eq!(ran_with(text, "P8843: 0.02\n").elements.len(), 1);
 }
 
@@ -68,7 +68,7 @@ fn p8852_limits_the_feed_of_circles() {
     let limit = 60.0 * 16.0 * 0.2_f64.sqrt();
     assert!((feeds(&ran)[0] - limit).abs() < 1e-9);
     assert_eq!(feeds(&ran)[1], 9000.0);
-    assert!(fault_with("F100 G3 I5\n", "P8852: 6\n").starts_with("1237 "));
+    assert!(fault_with("F100 G3 I5\n", "P8852: 6\n").starts_with("M1237 "));
 }
 
 /// [002:897-934]: G18 has Z and X with K and I, G117 what P8840 says, in the same block too [002:4350-4352].
