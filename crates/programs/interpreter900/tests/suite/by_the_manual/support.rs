@@ -92,6 +92,6 @@ pub fn ends(data: &str, program: &str) -> Vec<[f64; 3]> {
 /// The fault of a program, in words.
 pub fn fault(data: &str, program: &str) -> String {
     let ran = run(&mut reader(data, program));
-    let (message, detail) = ran.fault.expect("it runs");
+    let (message, detail) = ran.fault.unwrap_or_else(|| panic!("it runs"));
     format!("{message} {detail}").trim().to_owned()
 }
