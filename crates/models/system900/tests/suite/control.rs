@@ -1,7 +1,7 @@
 //! What a running control reads of its parameters, with the defaults of the chapter.
 
 use bahn_path::Axis;
-use bahn_system900::{AxisBlock, Connection, DataFile, Memory, Together, slots};
+use bahn_system900::{AxisBlock, Connection, DataFile, Memory, Together, slots, together};
 
 fn memory(text: &str) -> Memory {
     let file = DataFile::read(text.as_bytes());
@@ -63,10 +63,10 @@ fn overrides_go_through_their_table() {
 fn networks_say_who_is_together() {
     let memory = memory("q2: 3\nq10: 99\nq914: $5\n");
     assert_eq!(
-        [1, 2, 3].map(|channel| memory.together(channel, Together::Stop)),
+        [1, 2, 3].map(|channel| together(&memory, channel, Together::Stop).bits()),
         [5, 2, 5]
     );
-    assert_eq!(memory.together(1, Together::Mode), 1);
+    assert_eq!(together(&memory, 1, Together::Mode).bits(), 1);
 }
 
 /// X and Z have their letters, Y3 and Q what is left.
