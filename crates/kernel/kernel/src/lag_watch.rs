@@ -32,7 +32,8 @@ impl LagWatch {
     /// use bahn_kernel::{LagRule, LagWatch};
     /// let rule = LagRule { gain_s: 16.0, feed_forward: 0.0, part: 0.5, least_mm: 0.03, time_s: 0.05 };
     /// let mut watch = LagWatch::default();
-    /// // 100 mm/s lag by 6.25 mm: 9 mm are allowed, 10 mm are not, and that for 50 ms.
+    /// // It has come to 100 mm/s, and lags by 6.25 mm: 9 mm are allowed, 10 mm are not, and that for 50 ms.
+    /// assert!((0..1000).all(|_| !watch.passes(&rule, 100.0, 0.0, 0.004)));
     /// assert!((0..1000).all(|_| !watch.passes(&rule, 100.0, 9.0, 0.004)));
     /// let cycles = (1..).find(|_| watch.passes(&rule, 100.0, 10.0, 0.004));
     /// assert_eq!(cycles, Some(13));
