@@ -1,11 +1,8 @@
 //! The axes of a channel, and which axis of the path each is.
-//!
-//! Decision: A logical axis with a letter alone is the axis of the path with this letter; others, those with an extension
-//! or another letter, get the free ones in the order U V W A B C X Y Z. A path has nine axes
 
 use bahn_din::system900::AxisName;
 use bahn_path::{Axis, PerAxis};
-use bahn_system900::{AxisWord, Memory};
+use bahn_system900::{AxisWord, Memory, slots};
 
 /// An axis of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,19 +21,6 @@ pub struct ChannelAxis {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelAxes(PerAxis<Option<ChannelAxis>>);
 
-/// What axes without a letter of their own on the path get.
-const FREE: &[Axis] = &[
-    Axis::U,
-    Axis::V,
-    Axis::W,
-    Axis::A,
-    Axis::B,
-    Axis::C,
-    Axis::X,
-    Axis::Y,
-    Axis::Z,
-];
-
 /// The name that programs write; an extension is a digit, or the byte of one (q110 to q141).
 fn name_of(word: AxisWord) -> AxisName {
     let extension = match word.extension {
@@ -53,39 +37,25 @@ impl ChannelAxes {
     /// Those of a channel; without any descriptor X, Y, Z are the logical axes 1 to 3.
     ///
     /// # Errors
-    /// When it has more than nine axes with a name, in words.
+    /// When one of its axes has no place on the path, in words.
     pub fn of(memory: &Memory, channel: u8) -> Result<ChannelAxes, String> {
         let mut axes = ChannelAxes::default();
-        let named: Vec<_> = memory
-            .path_data(channel)
-            .axes()
-            .filter(|(_, word)| word.letter != 0)
-            .collect();
-        if named.len() > Axis::ALL.len() {
-            return Err(format!(
-                "channel {channel} has {} axes: a path has nine at most",
-                named.len()
-            ));
-        }
-        for is_plain in [true, false] {
-            for (logical, word) in &named {
-                let name = name_of(*word);
-                let own = Axis::from_letter(word.letter).filter(|_| name.extension == 0);
-                let own = own.filter(|slot| axes.0[*slot].is_none_or(|there| there.logical == *logical));
-                let slot = match (is_plain, own) {
-                    (true, own) => own,
-                    (false, Some(_)) => None,
-                    (false, None) => FREE.iter().copied().find(|slot| axes.0[*slot].is_none()),
-                };
-                if let Some(slot) = slot {
-                    axes.0[slot] = Some(ChannelAxis {
-                        slot,
-                        logical: *logical,
-                        physical: word.physical,
-                        name,
-                    });
-                }
-            }
+        let slots = slots(memory, channel);
+        let data = memory.path_data(channel);
+        for (logical, word) in data.axes().filter(|(_, word)| word.letter != 0) {
+            let slot = slots.get(usize::from(logical) - 1).copied().flatten();
+            let name = name_of(word);
+            let Some(slot) = slot else {
+                return Err(format!(
+                    "{name} of channel {channel} has no place on a path of nine axes"
+                ));
+            };
+            axes.0[slot] = Some(ChannelAxis {
+                slot,
+                logical,
+                physical: word.physical,
+                name,
+            });
         }
         Ok(axes)
     }
