@@ -264,7 +264,9 @@ fn a_day_at_the_mill_with_the_mouse() {
     desk.shows("dialogue", "DATUM SET X =");
     desk.keys("ENT");
     // An axis that is held in position may be a step of its encoder beside it.
-    desk.until("/X \\+12\\.(499|500|501)/.test(document.querySelector('[data-region=status] .axes').textContent)");
+    desk.until(
+        "/X \\+12\\.(499|500|501)/.test(document.querySelector('[data-region=status] .axes').textContent)",
+    );
     pictures::take(&mut desk.page, "manual");
 
     // The program; in the middle of a block the page is loaded anew.

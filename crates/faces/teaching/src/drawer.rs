@@ -4,7 +4,7 @@
 
 use bahn_exchange::Bit;
 use bahn_host::{Action, Operable};
-use bahn_parameters::{ControlModel, Numbering};
+use bahn_parameters::ControlModel;
 use bahn_screen::texts::{self, Language};
 use bahn_why::wiring;
 use serde::Serialize;
@@ -94,7 +94,7 @@ const GROUPS: [&str; 4] = ["axes and spindle", "things", "inputs", "control and 
 
 /// What can be broken at a plant; inputs have the letters of the control.
 pub fn of<P: Operable>(plant: &P, model: ControlModel, language: Language) -> Vec<Breakable> {
-    let old = model.limits().numbering == Numbering::Old;
+    let old = model.limits().has_old_numbers();
     let finder = Finder { plant, language };
     let [axes, things, inputs, supply] = GROUPS;
     let in_words = |english| texts::words(language, english);

@@ -475,7 +475,7 @@ impl Situation<'_> {
 
     /// The control has the letters and numbers of the TNC 151/155.
     fn is_old(&self) -> bool {
-        self.control.model().limits().numbering == Numbering::Old
+        self.control.model().limits().has_old_numbers()
     }
 
     fn causes(&self, causes: &[Cause]) -> Vec<String> {
