@@ -163,6 +163,25 @@ impl Bit {
     }
 }
 
+impl Bit {
+    /// Its name with the letters that a control has: E, A and Z on the TNC 151, 155 and 355 [000:16189-16202].
+    ///
+    /// ```
+    /// use bahn_exchange::{Bit, BitArea};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let completed: Bit = "I17".parse()?;
+    /// assert_eq!((completed.name(true), completed.name(false)), ("E17".to_owned(), "I17".to_owned()));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn name(self, old: bool) -> String {
+        match old {
+            true => format!("{}{}", self.area.old_letter(), self.number),
+            false => self.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for Bit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{}", self.area.letter(), self.number)

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use bahn_parameters::equipment::Behaviour;
 use bahn_parameters::interfaces::{ControlCharacters, Mode, TransferFormat};
-use bahn_parameters::{ControlModel, Numbering, ParameterList};
+use bahn_parameters::{ControlModel, ParameterList};
 
 use crate::Characters;
 
@@ -71,7 +71,7 @@ impl Settings {
     /// A TNC 151/155 of software level 05 or later controls the flow of a blockwise transfer by ACK and NAK alone, whatever
     /// MP222 says of RTS and DC3; before, DC1 stands behind headers and blocks (inferred from the tables) [001:1946-1948].
     fn with_flow_of(self, parameters: &ParameterList) -> Settings {
-        let old = parameters.model().limits().numbering == Numbering::Old;
+        let old = parameters.model().limits().has_old_numbers();
         let by_answers = parameters.equipment().does(Behaviour::FlowByAcknowledgement);
         match old && self.blockwise && by_answers {
             true => Settings {

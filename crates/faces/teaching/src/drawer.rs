@@ -2,7 +2,9 @@
 //! repairs it. What there is, a copy of the plant says: what cannot be done to it is left out, and of a plant without copy
 //! nothing can be broken.
 
+use bahn_exchange::Bit;
 use bahn_host::{Action, Operable};
+use bahn_parameters::ControlModel;
 use bahn_screen::texts::{self, Language};
 use bahn_why::wiring;
 use serde::Serialize;
@@ -10,7 +12,7 @@ use serde::Serialize;
 /// Something that can be broken.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Breakable {
-    /// Its name in actions: `X`, `S`, `door`, `I21`.
+    /// Its name in actions: `X`, `S`, `door`, `I21`; on a TNC 151/155 `E21`.
     pub name: String,
     /// Its group in words: axes, things, inputs.
     pub group: String,
@@ -90,8 +92,9 @@ const HANDWHEEL: Faults = &[("handwheel unplug", "the handwheel is not plugged i
 
 const GROUPS: [&str; 4] = ["axes and spindle", "things", "inputs", "control and supply"];
 
-/// What can be broken at a plant.
-pub fn of<P: Operable>(plant: &P, language: Language) -> Vec<Breakable> {
+/// What can be broken at a plant; inputs have the letters of the control.
+pub fn of<P: Operable>(plant: &P, model: ControlModel, language: Language) -> Vec<Breakable> {
+    let old = model.limits().has_old_numbers();
     let finder = Finder { plant, language };
     let [axes, things, inputs, supply] = GROUPS;
     let in_words = |english| texts::words(language, english);
@@ -119,7 +122,11 @@ pub fn of<P: Operable>(plant: &P, language: Language) -> Vec<Breakable> {
     for wired in plant.wires() {
         let name = &wired.operand;
         let words = wiring::in_words(&wired, plant, language);
-        found.push(finder.breakable(name, inputs, &words, INPUT, &format!("repair {name}")));
+        let mut input = finder.breakable(name, inputs, &words, INPUT, &format!("repair {name}"));
+        if let Ok(bit) = name.parse::<Bit>() {
+            input.name = bit.name(old);
+        }
+        found.push(input);
     }
     let voltage = in_words("control voltage");
     found.push(finder.breakable("relay", supply, voltage, RELAY, "repair relay"));

@@ -469,8 +469,13 @@ impl Situation<'_> {
             marker: Some(bit.to_string()),
             lines,
             causes: self.causes(&trace.causes(bit, wanted)),
-            ..reason(urgency, fill(text, &[who, &bit.to_string(), &by]))
+            ..reason(urgency, fill(text, &[who, &bit.name(self.is_old()), &by]))
         }
+    }
+
+    /// The control has the letters and numbers of the TNC 151/155.
+    fn is_old(&self) -> bool {
+        self.control.model().limits().has_old_numbers()
     }
 
     fn causes(&self, causes: &[Cause]) -> Vec<String> {
@@ -478,7 +483,7 @@ impl Situation<'_> {
             Cause::Bit(bit, value) => {
                 let is = fill(
                     &self.words("{1} is {2}"),
-                    &[&bit.to_string(), if *value { "1" } else { "0" }],
+                    &[&bit.name(self.is_old()), if *value { "1" } else { "0" }],
                 );
                 match self.meaning(*bit) {
                     Some(meaning) => format!("{is} ({meaning})"),
@@ -530,8 +535,7 @@ impl Situation<'_> {
 
     /// A reason with its machine parameter, which a control with old numbers names by its own.
     fn with_parameter(&self, reason: Reason, parameter: &str) -> Reason {
-        let numbering = self.control.model().limits().numbering;
-        let mut own = OLD_NUMBERS.iter().filter(|_| numbering == Numbering::Old);
+        let mut own = OLD_NUMBERS.iter().filter(|_| self.is_old());
         let old = own.find(|(new, _)| *new == parameter);
         let own = old.map_or(parameter, |(_, old)| *old);
         Reason {

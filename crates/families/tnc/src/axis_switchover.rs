@@ -10,7 +10,7 @@
 
 use bahn_exchange::{Bit, Image, signal};
 use bahn_kernel::{AxisId, PerChannel};
-use bahn_parameters::{ControlModel, Numbering};
+use bahn_parameters::ControlModel;
 use bahn_path::Axis;
 use bahn_plc::{PlcProgram, Subject, accesses};
 
@@ -35,7 +35,7 @@ pub(crate) struct AxisSwitchover {
 impl AxisSwitchover {
     /// Of a control with a PLC program; those after the TNC 151/155 do not know the markers.
     pub fn new(model: ControlModel, plc: &PlcProgram) -> AxisSwitchover {
-        let old = model.limits().numbering == Numbering::Old;
+        let old = model.limits().has_old_numbers();
         let names = |subject: &Subject| matches!(subject, Subject::Bit { bit, indexed: false } if MARKERS.contains(bit));
         let mut code = plc.code.iter();
         let assigns = old && code.any(|line| accesses(&line.op).iter().any(|(subject, _)| names(subject)));

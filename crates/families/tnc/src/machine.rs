@@ -10,7 +10,7 @@ use bahn_kernel::{Axes, AxisId, Circuit, CircuitOrder, Core, DriveOffsets, Emerg
 use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_parameters::operation::{HandwheelParameters, Station};
 use bahn_parameters::plc::PlcParameters;
-use bahn_parameters::{ControlModel, MessageId, Numbering, ParameterList};
+use bahn_parameters::{ControlModel, MessageId, ParameterList};
 use bahn_path::BlockRef;
 use bahn_plc::{Machine, PlcProgram, Start, TableKind, Tracer, mirror_parameters};
 use bahn_servo::{Commands, Measured};
@@ -298,7 +298,7 @@ impl MachineSide {
 
     /// Its PLC has the interface of the TNC 151 and 155.
     pub fn has_old_interface(&self) -> bool {
-        self.model.limits().numbering == Numbering::Old
+        self.model.limits().has_old_numbers()
     }
 
     /// Whether somebody may look at the inputs in the servo step that begins then: a scan, or what monitors them.

@@ -229,7 +229,7 @@ impl Signal {
     /// Its name with the letters of a control: E17 and A7 where inputs and outputs are E and A, `old`, I17 and O7 elsewhere.
     pub fn name(&self, old: bool) -> String {
         match self {
-            Signal::Bit(bit) if old => format!("{}{}", bit.area().old_letter(), bit.number()),
+            Signal::Bit(bit) => bit.name(old),
             signal => signal.to_string(),
         }
     }

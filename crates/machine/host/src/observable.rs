@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use bahn_parameters::{ControlModel, Numbering};
+use bahn_parameters::ControlModel;
 use bahn_tnc::{AxisSignal, ChannelView, Control, Signal, SignalError, split_channel};
 
 use crate::of_module::of_module;
@@ -240,7 +240,7 @@ impl fmt::Display for Observed {
 impl Observed {
     /// Its name in the words of a control, which the TNC 151/155 has of its own for inputs and outputs [001:477-482].
     pub fn name(&self, model: ControlModel) -> String {
-        let old = model.limits().numbering == Numbering::Old;
+        let old = model.limits().has_old_numbers();
         match &self.what {
             Observable::Signal(signal) if self.channel == 0 && !self.module => signal.name(old),
             _ => self.to_string(),

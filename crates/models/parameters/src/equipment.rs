@@ -11,8 +11,8 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+use crate::ControlModel;
 use crate::conformance::{Kind, Range};
-use crate::{ControlModel, Numbering};
 
 /// A hardware option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -315,7 +315,7 @@ impl Release {
     /// [`ReleaseError`], with those that there are.
     pub fn read(model: ControlModel, text: &str) -> Result<Release, ReleaseError> {
         let digits: String = text.chars().filter(|c| *c != ' ').collect();
-        if model.limits().numbering == Numbering::Old {
+        if model.limits().has_old_numbers() {
             let level = digits.parse().ok().filter(|level| (1..=99).contains(level));
             return level
                 .map(|version| Release {
@@ -399,7 +399,7 @@ impl HardwareOption {
 
     /// Whether a model can have it.
     pub fn is_of(self, model: ControlModel) -> bool {
-        let old = model.limits().numbering == Numbering::Old;
+        let old = model.limits().has_old_numbers();
         match self {
             HardwareOption::SpindleOrientation => old,
             HardwareOption::Ts120 => !old,
@@ -471,7 +471,7 @@ impl Equipment {
 
 /// The first release with something, as the numbers of a model have it: of these series if there is one, else of the latest.
 fn first(model: ControlModel, since: &[(Series, u8)], of: Option<Series>) -> Option<String> {
-    let old = model.limits().numbering == Numbering::Old;
+    let old = model.limits().has_old_numbers();
     let own = since.iter().filter(|(series, _)| Some(*series) == of);
     own.chain(since.iter().rev()).find_map(|(series, version)| {
         if *series == Series::Level {

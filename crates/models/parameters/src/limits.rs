@@ -318,6 +318,12 @@ impl ControlModel {
 }
 
 impl Limits {
+    /// Its machine parameters, inputs and outputs are numbered and lettered as on the TNC 151/155 [001:477-482]
+    /// [001:1580-1950].
+    pub fn has_old_numbers(&self) -> bool {
+        self.numbering == Numbering::Old
+    }
+
     /// Whether the model has a standard cycle.
     pub fn has_cycle(&self, cycle: u32) -> bool {
         self.cycles.iter().any(|known| u32::from(*known) == cycle)

@@ -41,14 +41,14 @@ pub use spindle_parameters::{FreeOutput, GearSignal, SpindleOutput, SpindleParam
 pub use tables::{FILE_TYPES, FileTypes, POCKET_ELEMENTS, TOOL_ELEMENTS, TableParameters, shown_elements};
 pub use tool_probe::{ProbeOrientation, ToolProbeParameters, ToolProbeTolerance};
 
-use crate::{Numbering, ParameterList};
+use crate::ParameterList;
 
 pub(crate) use bits::bit_of;
 
 impl ParameterList {
     /// Whether the list has the numbers of the TNC 151/155.
     pub(crate) fn has_old_numbers(&self) -> bool {
-        self.model().limits().numbering == Numbering::Old
+        self.model().limits().has_old_numbers()
     }
 
     /// A value under the number of the new or the old list. Every model has every parameter asked for

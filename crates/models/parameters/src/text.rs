@@ -6,7 +6,7 @@ use std::ops::Range;
 use bahn_text::{MARK_BYTES, Span, utf8_or_latin};
 
 use crate::definition::{parse_id, parse_number};
-use crate::{ControlModel, Definition, ListError, Numbering, ParameterError, ParameterId};
+use crate::{ControlModel, Definition, ListError, ParameterError, ParameterId};
 
 /// The text of a list of machine parameters. Reading it never fails and keeps every byte; a value can be
 /// changed in its place, so that comments and order stay.
@@ -455,7 +455,7 @@ pub(crate) fn read_assignment(model: ControlModel, text: &str, from: usize) -> R
 fn user_letter(model: ControlModel, written: &str) -> Option<usize> {
     let before = written.strip_suffix(['P', 'p'])?;
     let apart = before.ends_with(char::is_whitespace) && !before.trim().is_empty();
-    (apart && model.limits().numbering == Numbering::Old).then_some(before.len())
+    (apart && model.limits().has_old_numbers()).then_some(before.len())
 }
 
 /// Reads a value; the error is the length of what could be read of it, 0 for nothing.

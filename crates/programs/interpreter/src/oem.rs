@@ -12,7 +12,7 @@
 //! Decision: M00 must not stand in a cycle of the machine builder, as STOP must not; M01 may, since the control does
 //! not stop for it
 
-use bahn_parameters::{MessageId, Numbering};
+use bahn_parameters::MessageId;
 use bahn_program::{MFunctions, Operation};
 
 use crate::definition::{Definition, OEM_CYCLES, RunningOem};
@@ -88,7 +88,7 @@ pub(crate) fn permit(
     settings: &Settings,
 ) -> Result<(), Fault> {
     let Some(running) = running else { return Ok(()) };
-    let old = settings.model.limits().numbering == Numbering::Old;
+    let old = settings.model.limits().has_old_numbers();
     let stops = |m: &MFunctions| {
         let m6 = settings.rules.machine.m6_stops && m.contains(6);
         let ends = [0, 2, 30].into_iter().any(|number| m.contains(number));

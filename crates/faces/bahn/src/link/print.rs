@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use bahn_host::files;
 use bahn_link::{HardCopy, PrintOut, Protocol};
-use bahn_parameters::Numbering;
 use bahn_parameters::equipment::Behaviour;
 use bahn_picture::Image;
 use clap::{Args, ValueHint};
@@ -51,7 +50,7 @@ pub(super) fn command(options: &PrintOptions) -> Result<Outcome, UsageError> {
     };
     let model = machine.list.model();
     // MP226 to MP233, and a screen with graphics: the TNC 155 and its versions [001:2157].
-    if model.limits().numbering != Numbering::Old || !model.has_graphics() {
+    if !model.limits().has_old_numbers() || !model.has_graphics() {
         let why = match model.has_graphics() {
             true => "its machine parameters describe no printer",
             false => "it has no graphics",

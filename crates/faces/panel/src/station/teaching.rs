@@ -97,7 +97,7 @@ impl Station {
 
     /// Everything that a teacher can break, and how.
     pub fn drawer(&self) -> Vec<Breakable> {
-        drawer::of(self.host.plant(), self.language())
+        drawer::of(self.host.plant(), self.control().model(), self.language())
     }
 
     /// The lessons of the machine's folder: names and titles; one that cannot be read has its faults as title.

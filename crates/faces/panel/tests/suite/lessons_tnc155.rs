@@ -71,8 +71,21 @@ fn the_contactor_that_sticks() {
 #[test]
 fn e17_never_comes() {
     let mut trainee = begin("02-e17");
-    trainee.wait(2.0);
-    action(&mut trainee, "repair I17");
+    trainee.wait(30.0);
+    // Whoever looks for the cause, and whoever breaks it, reads the letters of this control.
+    let causes: Vec<String> = trainee
+        .station
+        .why()
+        .into_iter()
+        .flat_map(|reason| reason.causes)
+        .collect();
+    assert!(
+        causes.iter().any(|cause| cause == "E17 is 0 (completed: on)"),
+        "{causes:?}"
+    );
+    let drawer = trainee.station.drawer();
+    let wire = drawer.iter().find(|breakable| breakable.name == "E17").unwrap();
+    action(&mut trainee, &wire.repair);
     passed(&mut trainee);
     nothing_is_not_enough("02-e17");
 }

@@ -120,7 +120,7 @@ fn binary_code_is_written_for_an_eprom() {
 #[test]
 fn the_file_of_messages_is_selected() {
     let mut trainee = Trainee::with("mill", |folder| {
-        std::fs::write(folder.join("plc/OTHER.ER1"), "-\n".repeat(11) + "ANOTHER TEXT\n").unwrap();
+        std::fs::write(folder.join("plc/OTHER.ER1"), "-\n".repeat(20) + "ANOTHER TEXT\n").unwrap();
         std::fs::write(folder.join("plc/LONG.ER1"), "x\n".repeat(2000)).unwrap();
     });
     let before = trainee.file("machine.toml");
@@ -139,13 +139,13 @@ fn the_file_of_messages_is_selected() {
     assert_eq!(shown[2], "OTHER.ER1");
     trainee.down_to("OTHER.ER1");
     trainee.press("ENT");
-    // It is active at once [000:11237-11240]: M2935 is message 11, which the program of the mill leaves alone.
+    // It is active at once [000:11237-11240]: M2944 is message 20, which the program of the mill leaves alone.
     assert_eq!(
         trainee.screen().program.lines[2].text.split_whitespace().last(),
         Some("ACTIVE")
     );
     let shows = |trainee: &mut Trainee, text: &str| {
-        trainee.give(r#"{"action":"M2935=1"}"#).wait(0.05);
+        trainee.give(r#"{"action":"M2944=1"}"#).wait(0.05);
         let shown = trainee.messages().iter().any(|own| own == text);
         trainee.press("CE");
         shown
@@ -157,7 +157,7 @@ fn the_file_of_messages_is_selected() {
     trainee.down_to("OTHER.ER1");
     trainee
         .press("ENT")
-        .press(&"DOWN ".repeat(11))
+        .press(&"DOWN ".repeat(20))
         .typed("X")
         .press("END");
     assert!(shows(&mut trainee, "XANOTHER TEXT"), "{:?}", trainee.messages());
@@ -168,7 +168,7 @@ fn the_file_of_messages_is_selected() {
         .filter(|(one, other)| one != other);
     assert_eq!(differing.count(), 1, "{after}");
     let trainee = trainee.killed();
-    assert_eq!(trainee.station.machine().plc_messages[11], "XANOTHER TEXT");
+    assert_eq!(trainee.station.machine().plc_messages[20], "XANOTHER TEXT");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! The manual's own listings are typed loosely: `LBL230`, `OM 500`, `B 128`, `K + 0`, `X[`. Such lines are
 //! read, with a note that becomes a warning, or an error in strict checking.
 
-use bahn_parameters::{ControlModel, Numbering};
+use bahn_parameters::ControlModel;
 
 use super::form::{Class, Mnemonic, TNC_355};
 use super::memory::memory_operand;
@@ -213,7 +213,7 @@ fn read_operand(
 /// Whether the letters of the TNC 355 are those of the control itself: the interface of the TNC 151 and 155 is written with
 /// E and A [001:477-482].
 pub(crate) fn has_old_letters(model: ControlModel) -> bool {
-    model.limits().numbering == Numbering::Old
+    model.limits().has_old_numbers()
 }
 
 fn file_name(scanner: &mut Scanner) -> Result<String, LineError> {

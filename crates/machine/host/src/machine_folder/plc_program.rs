@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use bahn_machine::MachineFolder;
-use bahn_parameters::{ControlModel, Numbering, ParameterList};
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Options, PlcProgram, ProgramMemory, standard_program};
 
 use super::load::Loader;
@@ -36,7 +36,7 @@ impl Loader<'_> {
         let Some(name) = folder.plc_file() else {
             return self.standard(model, delivered);
         };
-        let old = model.limits().numbering == Numbering::Old;
+        let old = model.limits().has_old_numbers();
         if old && memory == ProgramMemory::Eprom {
             return match PlcSource::eprom_image(&self.root.join(name)) {
                 Some(image) => self.compiled(&image, None, options),

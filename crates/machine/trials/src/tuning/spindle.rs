@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use bahn_parameters::{Numbering, ParameterList, PerPlcAxis};
+use bahn_parameters::{ParameterList, PerPlcAxis};
 use bahn_path::Axis;
 
 use super::{BETTER, Change, changes};
@@ -71,7 +71,7 @@ struct Assistant<'a> {
 /// When the spindle has no position control, or the list does not get it through the trial.
 pub fn tune_spindle(machine: &LoadedMachine, list: &ParameterList) -> Result<TunedSpindle, String> {
     let spindle = list.spindle_parameters();
-    if list.model().limits().numbering == Numbering::Old {
+    if list.model().limits().has_old_numbers() {
         return Err(format!(
             "the {} has no cycle 17: its spindle cuts no thread that could be tried; MP168 is its ramp, MP238 kv of its orientation",
             list.model().name()

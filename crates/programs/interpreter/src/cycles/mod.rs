@@ -23,7 +23,7 @@ mod machining;
 mod pockets;
 mod transformation;
 
-use bahn_parameters::{MessageId, Numbering};
+use bahn_parameters::MessageId;
 use bahn_program::{CycleBlock, CycleFunction, CycleWord, Value, cycle};
 
 pub(crate) use self::contour_cycle::contour_cycle;
@@ -141,7 +141,7 @@ fn define_effective(c: &mut Context<'_>, block: &CycleBlock, words: Vec<Resolved
 /// The only cycle that was defined is a macro of a TNC 151/155 that has run at its definition: the printed program calls it all the
 /// same [001:3067-3080].
 fn has_run_at_definition(c: &Context<'_>) -> bool {
-    let old = c.settings.model.limits().numbering == Numbering::Old;
+    let old = c.settings.model.limits().has_old_numbers();
     let cycle = &c.modal.cycle;
     old && cycle.machining.is_empty() && cycle.oem.ready().is_some()
 }
