@@ -85,7 +85,10 @@ fn check_900(folder: &Path, format: Format, interrupt: &Interrupt) -> Result<Rep
             settings: Settings::default(),
             format,
         };
-        let all = loaded.iter().flat_map(|machine| programs(&machine.programs()));
+        let is_own = |name: &str| name.ends_with(".900");
+        let all = loaded
+            .iter()
+            .flat_map(|machine| programs(&machine.programs(), is_own));
         let checked = all.map(|path| OfFile::reported(&path, check::check(&path, &how, interrupt)));
         checked.collect()
     };
@@ -143,7 +146,7 @@ fn check_programs(
             continue;
         }
         let how = how(machine, list, format);
-        for path in programs(&folder) {
+        for path in programs(&folder, |name| bahn_program::language_of(name).is_some()) {
             reports.push(OfFile::reported(&path, check::check(&path, &how, interrupt)));
             if interrupt.is_requested() {
                 return reports;
@@ -185,12 +188,12 @@ fn how(machine: &LoadedMachine, list: &ParameterList, format: Format) -> Check {
     }
 }
 
-/// The programs in a folder, in the order of their names; none where it cannot be read.
-fn programs(folder: &Path) -> Vec<PathBuf> {
+/// The programs in a folder, by what their names say, in their order; none where it cannot be read.
+fn programs(folder: &Path, is_program: impl Fn(&str) -> bool) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut programs: Vec<PathBuf> = entries
         .map(|entry| entry.path())
-        .filter(|path| bahn_program::language_of(&path.to_string_lossy()).is_some())
+        .filter(|path| is_program(&path.to_string_lossy()))
         .collect();
     programs.sort();
     programs

@@ -88,7 +88,6 @@ fn what_is_for_a_tnc_says_so() {
     let folder = portal();
     for command in [
         "run --machine portal",
-        "mp check portal",
         "panel --machine portal",
         "torture --machine portal",
     ] {
