@@ -11,7 +11,7 @@
 //!
 //! fn choice(machine: &LoadedMachine, plant: &AnyPlant) -> Vec<String> {
 //!     let lessons = lesson::list(machine, plant, Language::English);
-//!     let broken = drawer::of(plant, Language::English);
+//!     let broken = drawer::of(plant, machine.parameters.model(), Language::English);
 //!     let titles = lessons.into_iter().map(|(_, title)| title);
 //!     titles.chain(broken.into_iter().map(|thing| thing.words)).collect()
 //! }
