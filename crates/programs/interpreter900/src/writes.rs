@@ -88,7 +88,9 @@ pub(crate) fn take(
             Some(Value::Content(from)) => content(memory.cell(Name::P(channel, from.number().into()))?),
         };
         ordered.waits |= status.synchronises();
-        match place.q().filter(|_| status.is_real_time()) {
+        // A command of the control is given where the path is, as a real-time parameter is written.
+        let is_later = status.is_real_time() || memory.runs_routine(place);
+        match place.q().filter(|_| is_later) {
             Some(q) => {
                 let value = match written {
                     Written::Decimal { digits, decimals } => {

@@ -90,3 +90,24 @@ fn a_cleared_parameter_gives_no_value() {
         "WRONG PROGRAM DATA P500 is cleared: it has no number to take"
     );
 }
+
+/// P12111 moves an axis as soon as it is written [002:7799-7806]: a program gives this command when the path comes to its block,
+/// however far ahead it is read. q2111 is that of physical axis 1.
+#[test]
+fn commands_are_given_where_the_path_is() {
+    let mut reader = reader("", "N10 G1 X1 F100\nN20 P12111:5 X2\nN30 M30\n");
+    let ran = run(&mut reader);
+    assert_eq!(ran.fault, None);
+    let held = reader.memory().unwrap().cell(Name::P(1, 12_111)).unwrap();
+    assert_eq!(held.number(), None, "it is not written while the program is read");
+    let write = Function::Write {
+        q: 2111,
+        value: Some(5.0),
+    };
+    let second = ran
+        .elements
+        .iter()
+        .find(|element| element.block.block == 2)
+        .unwrap();
+    assert_eq!(second.functions()[0].function, write);
+}
