@@ -220,6 +220,7 @@ q2010: 1 $20010001                ; sine
 q2012: 1000 $20010001             ; INC for each mm, quadrupled
 q2013: 1 $20010001
 q2014: $00000000 $30010001
+q2015: $01000000 $30010001        ; it knows its position at power-on: P12152
 q2016: 0.01 $23010001             ; exact stop, mm
 q2017: 0.08 $23010001             ; coarse
 q2018: 3000 $20010001             ; standstill within, ms
@@ -255,6 +256,7 @@ q2210: 1 $20010001                ; sine
 q2212: 1000 $20010001             ; INC for each mm, quadrupled
 q2213: 1 $20010001
 q2214: $00000001 $30010001        ; counts the other way
+q2215: $01000000 $30010001        ; it knows its position at power-on: P12152
 q2216: 0.01 $23010001             ; exact stop, mm
 q2217: 0.08 $23010001             ; coarse
 q2218: 3000 $20010001             ; standstill within, ms
@@ -282,6 +284,7 @@ q2410: 1 $20010001                ; sine
 q2412: 1000 $20010001             ; INC for each mm, quadrupled
 q2413: 1 $20010001
 q2414: $00000000 $30010001
+q2415: $01000000 $30010001        ; it knows its position at power-on: P12152
 q2416: 0.01 $23010001             ; exact stop, mm
 q2417: 0.08 $23010001             ; coarse
 q2418: 3000 $20010001             ; standstill within, ms
@@ -311,6 +314,7 @@ q2610: 1 $20010001                ; sine
 q2612: 2000 $20010001             ; INC for each mm, quadrupled
 q2613: 1 $20010001
 q2614: $00000000 $30010001
+q2615: $01000000 $30010001        ; it knows its position at power-on: P12152
 q2616: 0.01 $23010001             ; exact stop, mm
 q2617: 0.08 $23010001             ; coarse
 q2618: 3000 $20010001             ; standstill within, ms
@@ -340,6 +344,7 @@ q2810: 1 $20010001                ; sine
 q2812: 1000 $20010001             ; INC for each mm, quadrupled
 q2813: 1 $20010001
 q2814: $00000000 $30010001
+q2815: $01000000 $30010001        ; it knows its position at power-on: P12152
 q2816: 0.01 $23010001             ; exact stop, mm
 q2817: 0.08 $23010001             ; coarse
 q2818: 3000 $20010001             ; standstill within, ms
@@ -361,6 +366,7 @@ q2901: -2150 $20010001            ; from its own machine position
 q2902: 2150 $20010001             ; to that of the first head
 q2903: -400 $23010011             ; range 1
 q2904: -250 $23010011             ; range 2
+q2952: 2600 $23000011             ; where it stands at the first power-on
 q2919: 6000 $20000001             ; handwheel
 q2921: 6000 $20000001             ; relative
 q2922: 12000 $20000001            ; absolute
@@ -375,6 +381,7 @@ q3010: 1 $20010001                ; sine
 q3012: 1000 $20010001             ; INC for each mm, quadrupled
 q3013: 1 $20010001
 q3014: $00000000 $30010001
+q3015: $01000000 $30010001        ; it knows its position at power-on: P12152
 q3016: 0.01 $23010001             ; exact stop, mm
 q3017: 0.08 $23010001             ; coarse
 q3018: 3000 $20010001             ; standstill within, ms
@@ -404,6 +411,7 @@ q3210: 1 $20010001                ; sine
 q3212: 2000 $20010001             ; INC for each mm, quadrupled
 q3213: 1 $20010001
 q3214: $00000000 $30010001
+q3215: $01000000 $30010001        ; it knows its position at power-on: P12152
 q3216: 0.01 $23010001             ; exact stop, mm
 q3217: 0.08 $23010001             ; coarse
 q3218: 3000 $20010001             ; standstill within, ms
@@ -433,6 +441,7 @@ q3410: 0 $20010001                ; linear
 q3412: 1000 $20010001             ; INC for each degree, quadrupled
 q3413: 1 $20010001
 q3414: $00000000 $30010001
+q3415: $01000000 $30010001        ; it knows its position at power-on: P12152
 q3416: 0.02 $23010001             ; exact stop, degree
 q3417: 0.16 $23010001             ; coarse
 q3418: 3000 $20010001             ; standstill within, ms
@@ -459,6 +468,7 @@ q3610: 0 $20010001                ; linear
 q3612: 100 $20010001              ; INC for each degree, quadrupled
 q3613: 1 $20010001
 q3614: $00000000 $30010001
+q3615: $01000000 $30010001        ; it knows its position at power-on: P12152
 q3616: 0.02 $23010001             ; exact stop, degree
 q3617: 0.16 $23010001             ; coarse
 q3618: 3000 $20010001             ; standstill within, ms
@@ -481,6 +491,7 @@ q3810: 0 $20010001                ; linear
 q3812: 100 $20010001              ; INC for each degree, quadrupled
 q3813: 1 $20010001
 q3814: $00000000 $30010001
+q3815: $01000000 $30010001        ; it knows its position at power-on: P12152
 q3816: 0.02 $23010001             ; exact stop, degree
 q3817: 0.16 $23010001             ; coarse
 q3818: 3000 $20010001             ; standstill within, ms

@@ -75,8 +75,12 @@ impl Equipment {
         Ok(equipment)
     }
 
-    /// The same, or the machine with a System 900 that a folder describes.
-    pub fn of_any_family(model: ControlModel, options: &MachineOptions) -> Result<Equipment, UsageError> {
+    /// The same, or the machine with a System 900 that a folder describes, of which the options of a TNC are refused.
+    pub fn of_any_family(
+        model: ControlModel,
+        options: &MachineOptions,
+        run: &RunOptions,
+    ) -> Result<Equipment, UsageError> {
         let folder = options
             .folder
             .as_ref()
@@ -84,13 +88,7 @@ impl Equipment {
         let Some(folder) = folder else {
             return Equipment::of(model, options);
         };
-        let of_a_tnc = [
-            ("--parameters", options.parameters.is_some()),
-            ("--mp", !options.mp.is_empty()),
-            ("--tools", options.tools.is_some()),
-            ("--block-time", options.block_time),
-        ];
-        if let Some((option, _)) = of_a_tnc.into_iter().find(|(_, given)| *given) {
+        if let Some(option) = of_a_tnc(options, run) {
             return Err(UsageError::new(format!(
                 "{option} is for a TNC, and {} has a System 900",
                 folder.display()
@@ -144,6 +142,28 @@ impl Equipment {
             system900: None,
         })
     }
+}
+
+/// An option that is given and means something to a TNC alone.
+fn of_a_tnc(options: &MachineOptions, run: &RunOptions) -> Option<&'static str> {
+    let all = [
+        ("--parameters", options.parameters.is_some()),
+        ("--mp", !options.mp.is_empty()),
+        ("--tools", options.tools.is_some()),
+        ("--point-angle", !options.point_angle.is_empty()),
+        ("--block-time", options.block_time),
+        ("--set", !run.set.is_empty()),
+        ("--start", !run.start.is_empty()),
+        ("--tool-change", !run.tool_change.is_empty()),
+        ("--datum", !run.datum.is_empty()),
+        ("--skip-blocks", run.skip_blocks),
+        ("--inch-feed", run.inch_feed.is_some()),
+        ("--strict", run.strict),
+        ("--skip-unknown", run.skip_unknown),
+    ];
+    all.into_iter()
+        .find(|(_, given)| *given)
+        .map(|(option, _)| option)
 }
 
 /// Sets the single parameters of the command line; which ones.

@@ -35,6 +35,7 @@ mod path_svg;
 pub mod plc;
 pub mod record;
 pub mod run;
+pub mod run900;
 pub mod scope;
 pub mod shelf;
 pub mod solid;

@@ -528,6 +528,7 @@ impl PrintReport {
 }
 
 /// Where a block stands.
+#[derive(Default)]
 pub struct Place {
     /// The program that it stands in.
     pub program: String,

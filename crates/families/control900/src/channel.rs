@@ -128,6 +128,8 @@ pub(crate) struct Channel {
     pub shown: Option<(BlockRef, u32)>,
     /// Override of the path, %.
     pub override_percent: f64,
+    /// The block whose fault has broken the program off.
+    pub faulty: Option<BlockRef>,
 }
 
 /// A branch function on its way.
@@ -169,6 +171,7 @@ impl Channel {
             slope_mm_min: f64::INFINITY,
             shown: None,
             override_percent: 100.0,
+            faulty: None,
         }
     }
 

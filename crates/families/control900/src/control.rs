@@ -1,11 +1,13 @@
 //! A System 900: its parameters, its channels, and the clock that moves them.
 
-use bahn_kernel::{Clock, RunState};
-use bahn_reader::Reader;
+use bahn_kernel::{Clock, Feeder, RunState};
+use bahn_path::{BlockRef, PathElement};
+use bahn_reader::{Reader, Warning};
 use bahn_servo::{Commands, Plant};
 use bahn_system900::{Memory, Name, Receivers, SpaceError, Value};
 
-use crate::channel::Mode;
+use crate::channel::{Channel, Mode};
+use crate::language::Language;
 use crate::machine::Machine;
 use crate::message::Message;
 use crate::setup::Setup;
@@ -51,6 +53,17 @@ impl Control900 {
         if let Some(channel) = index.and_then(|k| self.machine.channels.get_mut(k)) {
             channel.program = program;
         }
+    }
+
+    /// There is a program that the next start of a channel, from 1 on, runs.
+    pub fn has_program(&self, channel: u8) -> bool {
+        self.channel(channel)
+            .is_some_and(|channel| channel.program.is_some())
+    }
+
+    /// The language of its programs.
+    pub fn language(&self) -> Option<Language> {
+        self.machine.language
     }
 
     /// An emergency program of a channel, 1 to 4: that of P8820, P8822, P8824, P8826.
@@ -130,7 +143,7 @@ impl Control900 {
         self.machine.transfers.iter()
     }
 
-    /// All messages since power-on, the first one first.
+    /// Messages since power-on, the first one first: the last 256.
     pub fn messages(&self) -> &[Message] {
         self.machine.messages.all()
     }
@@ -140,18 +153,80 @@ impl Control900 {
         self.machine.messages.pending(channel)
     }
 
+    /// Keeps the path elements of programs that begin from now on, for [`Control900::take_path`].
+    pub fn keep_path(&mut self) {
+        self.machine.keeps_path = true;
+    }
+
+    /// The path elements of a channel, from 1 on, that were prepared since the last call.
+    pub fn take_path(&mut self, channel: u8) -> Vec<PathElement> {
+        let feeder = self.feeder(channel);
+        feeder.map(Feeder::take_tap).unwrap_or_default()
+    }
+
+    /// Of what [`Control900::take_path`] has handed out so far, the elements from a sequence on are not executed.
+    pub fn take_dropped_path(&mut self, channel: u8) -> Option<u64> {
+        self.feeder(channel).and_then(Feeder::take_dropped)
+    }
+
+    /// What is to be said of the program of a channel since the last call, and ends no run.
+    pub fn take_warnings(&mut self, channel: u8) -> Vec<Warning> {
+        let feeder = self.feeder(channel);
+        feeder
+            .map(|feeder| feeder.reader_mut().take_warnings())
+            .unwrap_or_default()
+    }
+
+    fn feeder(&mut self, channel: u8) -> Option<&mut Feeder> {
+        let index = usize::from(channel).checked_sub(1)?;
+        self.machine.channels.get_mut(index)?.feeder.as_mut()
+    }
+
+    /// What a channel reads, as long as it runs and afterwards.
+    pub fn reader(&self, channel: u8) -> Option<&dyn Reader> {
+        Some(self.channel(channel)?.feeder.as_ref()?.reader())
+    }
+
+    /// The element that a channel executes, with the distance that is left of it, mm.
+    pub fn executed(&self, channel: u8) -> Option<(&PathElement, f64)> {
+        let run = &self.channel(channel)?.run;
+        Some((run.element()?, run.track.path.rest_mm()))
+    }
+
+    /// A program of a channel, from 1 on, was started, and has neither ended nor been broken off.
+    pub fn is_on_its_way(&self, channel: u8) -> bool {
+        self.channel(channel)
+            .is_some_and(|channel| channel.run.progress().is_on_its_way())
+    }
+
+    /// The block whose fault has broken the program of a channel, from 1 on, off.
+    pub fn faulty_block(&self, channel: u8) -> Option<BlockRef> {
+        self.channel(channel)?.faulty
+    }
+
+    fn channel(&self, channel: u8) -> Option<&Channel> {
+        let index = usize::from(channel).checked_sub(1)?;
+        self.machine.channels.get(index)
+    }
+
+    /// Some axis moves, or is to move.
+    pub fn moves(&self) -> bool {
+        self.machine.core.axes.iter().any(|unit| !unit.stands())
+    }
+
+    /// How many messages came since power-on.
+    pub fn message_count(&self) -> usize {
+        self.machine.messages.count()
+    }
+
     /// The mode of a channel, from 1 on; HAND where there is none.
     pub fn mode(&self, channel: u8) -> Mode {
-        let index = usize::from(channel).checked_sub(1);
-        let channel = index.and_then(|k| self.machine.channels.get(k));
-        channel.map_or(Mode::Hand, |channel| channel.mode)
+        self.channel(channel).map_or(Mode::Hand, |channel| channel.mode)
     }
 
     /// What the run of a channel does, and whether its program came to its end.
     pub fn run(&self, channel: u8) -> (RunState, bool) {
-        let index = usize::from(channel).checked_sub(1);
-        let channel = index.and_then(|k| self.machine.channels.get(k));
-        channel.map_or((RunState::Idle, false), |channel| {
+        self.channel(channel).map_or((RunState::Idle, false), |channel| {
             let progress = channel.run.progress();
             (progress.state(), progress.has_ended())
         })

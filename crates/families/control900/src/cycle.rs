@@ -3,6 +3,7 @@
 use bahn_kernel::{AxisUnit, Came, Circuit, CircuitOrder, Core, Family, Mover, RunFamily, RunFault};
 use bahn_motion::Stop;
 use bahn_path::LiveData;
+use bahn_reader::{Message, ProgramError};
 use bahn_servo::{Commands, Measured};
 use bahn_system900::{ChannelParameter, Place};
 
@@ -122,7 +123,7 @@ fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
 fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
     let number = k as u8 + 1;
     let (block, axis, text) = match fault {
-        RunFault::Program(error) => (error.block, None, error.detail.clone()),
+        RunFault::Program(error) => (error.block, None, said(error)),
         RunFault::Limit { axis, block, .. } => (*block, Some(*axis), format!("software limit of {axis}")),
         RunFault::Absent { axis, block, .. } => (*block, Some(*axis), format!("there is no axis {axis}")),
     };
@@ -140,7 +141,19 @@ fn fail(machine: &mut Machine, k: usize, fault: &RunFault) {
         machine.block_number(k, block).into(),
     );
     machine.say(0, number, logical, Kind::High, text.into());
+    if let Some(channel) = machine.channels.get_mut(k) {
+        channel.faulty = Some(block);
+    }
     machine.break_off(k);
+}
+
+/// What is said about a fault of a program. Messages of a TNC, which the planner has, are none of this control: only what
+/// exactly is wrong.
+fn said(error: &ProgramError) -> String {
+    match &error.message {
+        Message::Numbered(text) => text.clone(),
+        Message::Control(_) => error.detail.clone(),
+    }
 }
 
 /// Moves the axes of a channel for a cycle.

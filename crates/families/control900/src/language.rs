@@ -1,13 +1,18 @@
 //! Part programs of a System 900 as its control feeds from them.
 
+use std::sync::Arc;
+
 use bahn_interpreter900::Reader900;
 use bahn_path::{BlockRef, Position};
 use bahn_reader::Reader;
 use bahn_system900::Memory;
+use bahn_text::Files;
 
 /// A language of programs that read and write parameters: while a program is read it has all of them, and gives them back.
 #[derive(Clone, Copy, Debug)]
 pub struct Language {
+    /// Reads a program: its name, its bytes, its channel from 1 on, and the files beside it.
+    pub open: fn(&str, &[u8], u8, Arc<dyn Files>) -> Box<dyn Reader>,
     /// Gives a program the parameters; they come back when it is of another language.
     pub give: fn(&mut dyn Reader, Memory) -> Option<Memory>,
     /// Takes them back; `None` when it has none.
@@ -22,6 +27,9 @@ pub struct Language {
 /// The language of `P1000.900`: its programs have the parameters while they are read.
 pub fn language() -> Language {
     Language {
+        open: |name, bytes, channel, beside| {
+            Box::new(Reader900::new(name, bytes, channel, Position::ZERO, beside))
+        },
         give: |reader, memory| match Reader900::of_mut(reader) {
             Some(reader) => {
                 reader.note_write();

@@ -59,4 +59,4 @@ pub use language::{Language, language};
 pub use message::{Kind, Message};
 pub use setup::{Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
-pub use units::ideal_machine;
+pub use units::{cycle_us, ideal_machine, path_limits};

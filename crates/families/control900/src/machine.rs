@@ -43,6 +43,8 @@ pub(crate) struct Machine {
     pub scan_us: u64,
     /// Positions at power-on were taken.
     pub begun: bool,
+    /// What programs prepare is kept for those who follow.
+    pub keeps_path: bool,
 }
 
 impl Machine {
@@ -77,6 +79,7 @@ impl Machine {
             plc_us: u64::from(setup.plc_us.max(1)),
             scan_us: 0,
             begun: false,
+            keeps_path: false,
         };
         machine.messages.reserve();
         machine.transfers.reserve();
@@ -212,10 +215,13 @@ impl Machine {
             return;
         };
         (channel.branch, channel.jump, channel.waits_for_m) = (None, None, false);
+        channel.faulty = None;
         let Some(program) = channel.starting() else {
             return;
         };
-        channel.feeder = Some(Feeder::new(program.boxed(), channel.chain.clone(), within));
+        let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
+        feeder.set_tap(self.keeps_path);
+        channel.feeder = Some(feeder);
         self.give_memory(k);
         if let Some((_, Some(feeder), _)) = self.parts(k) {
             feeder.reader_mut().relocate(&here);

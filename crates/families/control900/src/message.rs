@@ -4,8 +4,9 @@
 //! EMERGENCY STOP is a message of the system
 
 use std::borrow::Cow;
+use std::fmt;
 
-/// Messages that are kept at most; further ones are counted.
+/// Messages that are kept at most; an older one makes room for a further one.
 const KEPT: usize = 256;
 
 /// What a message does.
@@ -52,6 +53,17 @@ pub struct Message {
     pub acknowledged_us: Option<u64>,
 }
 
+/// `M2001 lag error, channel 1, axis 2`; without a number its text.
+impl fmt::Display for Message {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.number > 0 {
+            write!(f, "M{} ", self.number)?;
+        }
+        write!(f, "{}, channel {}", self.text, self.channel)?;
+        self.axis.map_or(Ok(()), |axis| write!(f, ", axis {axis}"))
+    }
+}
+
 /// What the chapter says of its numbers.
 pub(crate) fn text_of(number: u32) -> &'static str {
     match number {
@@ -69,8 +81,8 @@ pub(crate) fn text_of(number: u32) -> &'static str {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Messages {
     list: Vec<Message>,
-    /// Those that came when no more were kept.
-    dropped: u64,
+    /// Those that made room for others.
+    dropped: usize,
 }
 
 impl Messages {
@@ -92,10 +104,13 @@ impl Messages {
         if self.list.iter().any(is_same) {
             return false;
         }
-        match self.list.len() < KEPT {
-            true => self.list.push(message),
-            false => self.dropped += 1,
+        if self.list.len() >= KEPT {
+            // The oldest one that is acknowledged makes room, else the oldest one.
+            let done = self.list.iter().position(|old| old.acknowledged_us.is_some());
+            self.list.remove(done.unwrap_or(0));
+            self.dropped += 1;
         }
+        self.list.push(message);
         true
     }
 
@@ -110,7 +125,12 @@ impl Messages {
         }
     }
 
-    /// All since power-on, the first one first.
+    /// How many came since power-on.
+    pub fn count(&self) -> usize {
+        self.list.len() + self.dropped
+    }
+
+    /// Those that are kept, the first one first.
     pub fn all(&self) -> &[Message] {
         &self.list
     }

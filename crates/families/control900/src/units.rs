@@ -32,6 +32,11 @@ pub(crate) fn timing(memory: &Memory) -> Timing {
     Timing::new(contour_us, contour_us / STEP_US, OUTPUT_BITS)
 }
 
+/// The interpolation cycle of a control with these parameters, µs.
+pub fn cycle_us(memory: &Memory) -> u32 {
+    timing(memory).contour_us()
+}
+
 /// The number of a physical axis in the kernel.
 fn id(physical: u8) -> Option<AxisId> {
     let number = physical.checked_sub(1)?;
@@ -81,7 +86,7 @@ pub(crate) fn build(memory: &Memory, timing: Timing) -> (Vec<AxisUnit>, Vec<Axis
     (units, places)
 }
 
-/// What a path of a channel may ask of its axes.
+/// What a path of a channel may ask of the axes that it has now.
 pub(crate) fn limits(axes: &OwnAxes, places: &[AxisPlace], timing: Timing) -> Limits {
     let of = |axis: Axis| {
         let mut own = axes
@@ -90,6 +95,21 @@ pub(crate) fn limits(axes: &OwnAxes, places: &[AxisPlace], timing: Timing) -> Li
         own.find(|(unit, _)| unit.axis == axis && !unit.is_plc_axis())
             .map(|(_, place)| place.block)
     };
+    limits_of(of, timing)
+}
+
+/// What a path of a channel, from 1 on, may ask of its axes: for whoever plans it without a control.
+pub fn path_limits(memory: &Memory, channel: u8) -> Limits {
+    let slots = slots(memory, channel);
+    let of = |axis: Axis| {
+        let mut axes = memory.axes_of(channel);
+        let own = axes.find(|(logical, _)| slots.get(usize::from(*logical) - 1) == Some(&Some(axis)));
+        own.map(|(_, physical)| AxisBlock::of(memory, physical))
+    };
+    limits_of(of, timing(memory))
+}
+
+fn limits_of(of: impl Fn(Axis) -> Option<AxisBlock>, timing: Timing) -> Limits {
     let speed = |block: AxisBlock| block.max_mm_min;
     let acceleration = |block: AxisBlock| block.max_mm_min / 60.0 / block.ramps_s[1] * 1e-3;
     Limits {

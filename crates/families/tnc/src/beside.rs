@@ -2,7 +2,7 @@
 //!
 //! Decision: In real time a program is handed over to a thread that reads it ahead, a thousand blocks at a time;
 //! cycles go on with what was read, a command waits until it is back. In simulation time nothing is handed over, so
-//! that every run is the same (also `host/src/reading.rs`)
+//! that every run is the same (also `host/src/tnc/reading.rs`)
 
 use bahn_interpreter::Rules;
 use bahn_kernel::Feeder;

@@ -6,7 +6,7 @@ use bahn_machine::{Event, KeyAction};
 use bahn_tnc::{Command, CommandError, split_channel};
 use thiserror::Error;
 
-/// Something that is done.
+/// Something that is done, on a control of one family or another: a TNC where nothing else is said.
 ///
 /// ```
 /// use bahn_host::Action;
@@ -18,9 +18,9 @@ use thiserror::Error;
 /// # Ok::<(), bahn_host::ActionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum Action<C = Command> {
     /// To a channel of the control, from 0.
-    Command(usize, Command),
+    Command(usize, C),
     /// To the machine, with its text.
     Event(Event, String),
 }
@@ -83,15 +83,17 @@ impl Action {
         });
         command.map(|command| Action::Command(channel, command))
     }
+}
 
+impl<C> Action<C> {
     /// A key of the panel is tapped.
-    pub fn tap(key: &str) -> Action {
+    pub fn tap(key: &str) -> Action<C> {
         let event = Event::Key(key.to_owned(), KeyAction::Tap);
         Action::Event(event, format!("key {key} tap"))
     }
 }
 
-impl fmt::Display for Action {
+impl<C: fmt::Display> fmt::Display for Action<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Action::Command(0, command) => command.fmt(f),

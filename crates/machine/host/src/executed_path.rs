@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use bahn_control900::Control900;
 use bahn_path::{PathElement, PerAxis};
 
 use crate::{Host, Operable};
@@ -51,20 +52,45 @@ impl ExecutedPath {
 
     /// Takes what a cycle has prepared, and looks how far the axes are.
     pub fn follow<P: Operable>(&mut self, host: &mut Host<P>) {
-        if let Some(dropped) = host.take_dropped_path(self.channel) {
+        let dropped = host.take_dropped_path(self.channel);
+        let prepared = host.take_path(self.channel);
+        let channel = host.control().channel(self.channel);
+        let now = channel.map(|channel| {
+            let element = channel.element().map(|element| (element, channel.rest_mm()));
+            (element, channel.has_ended())
+        });
+        self.advance(dropped, prepared, now);
+    }
+
+    /// The same of a channel of a System 900.
+    pub fn follow900<P: Operable>(&mut self, host: &mut Host<P, Control900>) {
+        let number = self.channel as u8 + 1;
+        let dropped = host.now.control.take_dropped_path(number);
+        let prepared = host.now.control.take_path(number);
+        let control = &host.now.control;
+        let (_, has_ended) = control.run(number);
+        self.advance(dropped, prepared, Some((control.executed(number), has_ended)));
+    }
+
+    /// What was prepared, from which sequence on what came before is not executed, and what is executed now: the element with
+    /// the distance that is left of it, and whether the program has ended.
+    fn advance(
+        &mut self,
+        dropped: Option<u64>,
+        prepared: Vec<PathElement>,
+        now: Option<(Option<(&PathElement, f64)>, bool)>,
+    ) {
+        if let Some(dropped) = dropped {
             self.ahead.retain(|element| element.sequence < dropped);
         }
-        self.ahead.extend(host.take_path(self.channel));
-        let Some(channel) = host.control().channel(self.channel) else {
-            return;
-        };
-        let current = channel.element();
-        if let Some(element) = current {
-            self.last_seen = Some((ElementId::of(element), channel.rest_mm()));
+        self.ahead.extend(prepared);
+        let Some((current, has_ended)) = now else { return };
+        if let Some((element, rest_mm)) = current {
+            self.last_seen = Some((ElementId::of(element), rest_mm));
         }
-        self.done = match (channel.has_ended(), current) {
+        self.done = match (has_ended, current) {
             (true, _) => self.ahead.len(),
-            (false, Some(current)) => self.before(ElementId::of(current)),
+            (false, Some((current, _))) => self.before(ElementId::of(current)),
             (false, None) => 0,
         };
     }

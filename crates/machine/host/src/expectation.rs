@@ -263,35 +263,20 @@ expect module:X.actual=100          of the positioning module (--with); also mod
             .find(['=', '<', '>'])
             .ok_or("it takes a signal and its value, as X.actual=100±0.01, or message \"TEXT\"")?;
         let (name, rest) = text.split_at(at);
-        let mut characters = rest.chars();
-        let relation = characters.next();
-        let value = characters.as_str().trim();
-        if name.trim() == "tool" && relation == Some('=') {
+        let equal = rest.strip_prefix('=').map(str::trim);
+        if let ("tool", Some(value)) = (name.trim(), equal) {
             let tool = value.parse().map_err(|_| format!("`{value}` is no tool"))?;
             return Ok(Expectation::Tool(tool));
         }
-        if let (Ok(Operand::Text(string)), Some('=')) = (name.parse(), relation) {
+        if let (Ok(Operand::Text(string)), Some(value)) = (name.parse(), equal) {
             return Operand::Text(string).content(value).map(|content| match content {
                 Content::Text(text) => Expectation::Text(string, text),
                 Content::Number(number) => Expectation::Text(string, number.to_string()),
             });
         }
         let signal: Observable = name.trim().parse().map_err(|error| format!("{error}"))?;
-        let number = |text: &str| value_of(&signal, text);
-        match relation {
-            Some('<') => Ok(Expectation::Value(signal, Relation::Less, number(value)?)),
-            Some('>') => Ok(Expectation::Value(signal, Relation::Greater, number(value)?)),
-            _ => {
-                let parts = ["±", "+-", "+/-"]
-                    .into_iter()
-                    .find_map(|separator| value.split_once(separator));
-                let (value, tolerance) = match parts {
-                    Some((value, tolerance)) => (number(value)?, decimal(tolerance)?.abs()),
-                    None => (number(value)?, TOLERANCE),
-                };
-                Ok(Expectation::Value(signal, Relation::Equal(tolerance), value))
-            }
-        }
+        let (relation, value) = Relation::read(rest, |text| value_of(&signal, text))?;
+        Ok(Expectation::Value(signal, relation, value))
     }
 
     /// `None` when it is so; otherwise what is.
@@ -361,14 +346,43 @@ expect module:X.actual=100          of the positioning module (--with); also mod
 }
 
 impl Relation {
-    /// `None` when an actual value is so; otherwise what it is.
-    fn check(self, signal: &Observable, actual: f64, value: f64) -> Option<String> {
-        let holds = match self {
+    /// Reads what follows a name, from `=`, `<` or `>` on, with whatever reads a value.
+    pub(crate) fn read(
+        text: &str,
+        number: impl Fn(&str) -> Result<f64, String>,
+    ) -> Result<(Relation, f64), String> {
+        let mut characters = text.chars();
+        let sign = characters.next();
+        let value = characters.as_str().trim();
+        match sign {
+            Some('<') => Ok((Relation::Less, number(value)?)),
+            Some('>') => Ok((Relation::Greater, number(value)?)),
+            _ => {
+                let mut separators = ["±", "+-", "+/-"].into_iter();
+                Ok(
+                    match separators.find_map(|separator| value.split_once(separator)) {
+                        Some((value, tolerance)) => {
+                            (Relation::Equal(decimal(tolerance)?.abs()), number(value)?)
+                        }
+                        None => (Relation::Equal(TOLERANCE), number(value)?),
+                    },
+                )
+            }
+        }
+    }
+
+    /// Whether an actual value is so.
+    pub(crate) fn holds(self, actual: f64, value: f64) -> bool {
+        match self {
             Relation::Equal(tolerance) => (actual - value).abs() <= tolerance,
             Relation::Less => actual < value,
             Relation::Greater => actual > value,
-        };
-        (!holds).then(|| format!("{signal} is {}", signal.decimals(actual)))
+        }
+    }
+
+    /// `None` when an actual value is so; otherwise what it is.
+    fn check(self, signal: &Observable, actual: f64, value: f64) -> Option<String> {
+        (!self.holds(actual, value)).then(|| format!("{signal} is {}", signal.decimals(actual)))
     }
 }
 
@@ -386,7 +400,8 @@ fn named<T: Copy>(name: &str, what: &str, all: &[(&str, T)]) -> Result<T, String
     })
 }
 
-fn quoted(text: &str) -> Result<String, String> {
+/// The text of a message, in quotes.
+pub(crate) fn quoted(text: &str) -> Result<String, String> {
     text.strip_prefix('"')
         .and_then(|rest| rest.strip_suffix('"'))
         .map(str::to_owned)

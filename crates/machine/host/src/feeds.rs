@@ -1,9 +1,10 @@
 //! What whoever follows a machine reads.
 
-use bahn_tnc::{Control, Snapshot};
+use bahn_tnc::Control;
 
 use crate::feed::{Feed, Reader};
-use crate::notice::{Before, Notice, Stamped};
+use crate::hosted::Hosted;
+use crate::notice::Stamped;
 
 /// Notices that wait for slow readers.
 const NOTICES: usize = 1024;
@@ -11,15 +12,15 @@ const NOTICES: usize = 1024;
 const SNAPSHOTS: usize = 256;
 
 /// The feeds of a machine.
-pub(crate) struct Feeds {
-    notices: Feed<Stamped>,
-    snapshots: Feed<Snapshot>,
+pub(crate) struct Feeds<C: Hosted = Control> {
+    notices: Feed<Stamped<C::Notice>>,
+    snapshots: Feed<C::Snapshot>,
     /// Time between two snapshots, µs, and when the next one is due.
     snapshot_us: Option<(u64, u64)>,
 }
 
-impl Default for Feeds {
-    fn default() -> Feeds {
+impl<C: Hosted> Default for Feeds<C> {
+    fn default() -> Feeds<C> {
         Feeds {
             notices: Feed::new(NOTICES),
             snapshots: Feed::new(SNAPSHOTS),
@@ -28,12 +29,12 @@ impl Default for Feeds {
     }
 }
 
-impl Feeds {
-    pub fn notices(&self) -> Reader<Stamped> {
+impl<C: Hosted> Feeds<C> {
+    pub fn notices(&self) -> Reader<Stamped<C::Notice>> {
         self.notices.reader()
     }
 
-    pub fn snapshots(&self) -> Reader<Snapshot> {
+    pub fn snapshots(&self) -> Reader<C::Snapshot> {
         self.snapshots.reader()
     }
 
@@ -49,7 +50,7 @@ impl Feeds {
         }
     }
 
-    pub fn tell(&self, time_us: u64, channel: usize, notice: Notice) {
+    pub fn tell(&self, time_us: u64, channel: usize, notice: C::Notice) {
         self.notices.put(|_| Stamped {
             time_us,
             channel,
@@ -57,15 +58,10 @@ impl Feeds {
         });
     }
 
-    /// Tells what has changed, and takes a snapshot when one is due; of what is repeated nobody is told.
-    pub fn look(&mut self, before: &mut Before, control: &mut Control, repeats: bool) {
+    /// Takes a snapshot when one is due.
+    pub fn look(&mut self, control: &C) {
         let time_us = control.time_us();
-        before.compare(control, |channel, notice| {
-            if !repeats {
-                self.tell(time_us, channel, notice);
-            }
-        });
-        if let Some((every_us, due_us)) = self.snapshot_us.as_mut().filter(|_| !repeats)
+        if let Some((every_us, due_us)) = &mut self.snapshot_us
             && time_us >= *due_us
         {
             *due_us = time_us + *every_us;

@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
-use bahn_tnc::{Command, Dnc, Renewed};
+use bahn_tnc::Control;
 
 use crate::action::{Action, Source};
+use crate::hosted::Hosted;
 use crate::orders::Order;
 
 /// Entries that are known at most; the oldest are forgotten.
@@ -15,18 +16,18 @@ const TEXT_MAX: usize = 16 << 20;
 
 /// How something was given.
 #[derive(Clone, Debug)]
-pub(crate) enum Given {
+pub(crate) enum Given<C: Hosted = Control> {
     /// By whoever drives the host, at once.
-    AtOnce(Source, Action),
+    AtOnce(Source, Action<C::Command>),
     /// By an order of somebody beside the host, when its time had come.
-    Order(Order),
+    Order(Order<C::Command>),
     /// What an editor has written.
-    Renewed(Renewed),
+    Renewed(C::Renewed),
 }
 
-impl Given {
+impl<C: Hosted> Given<C> {
     /// What was done, and by whom.
-    pub fn action(&self) -> Option<(&Source, &Action)> {
+    pub fn action(&self) -> Option<(&Source, &Action<C::Command>)> {
         match self {
             Given::AtOnce(source, action) => Some((source, action)),
             Given::Order(order) => Some((&order.source, &order.action)),
@@ -37,23 +38,33 @@ impl Given {
     /// Bytes of program text in it.
     fn text(&self) -> usize {
         match self.action() {
-            Some((_, Action::Command(_, Command::Dnc(Dnc::Text(text))))) => text.len(),
+            Some((_, Action::Command(_, command))) => C::text_in(command),
             _ => 0,
         }
     }
 }
 
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Journal {
-    given: VecDeque<(u64, Given)>,
+#[derive(Clone, Debug)]
+pub(crate) struct Journal<C: Hosted = Control> {
+    given: VecDeque<(u64, Given<C>)>,
     /// Number of the first one.
     first: u64,
     /// Bytes of program text in it.
     text: usize,
 }
 
-impl Journal {
-    pub fn add(&mut self, time_us: u64, given: Given) {
+impl<C: Hosted> Default for Journal<C> {
+    fn default() -> Journal<C> {
+        Journal {
+            given: VecDeque::new(),
+            first: 0,
+            text: 0,
+        }
+    }
+}
+
+impl<C: Hosted> Journal<C> {
+    pub fn add(&mut self, time_us: u64, given: Given<C>) {
         self.text += given.text();
         while (self.given.len() == GIVEN_MAX || self.text > TEXT_MAX)
             && let Some((_, oldest)) = self.given.pop_front()
@@ -70,12 +81,12 @@ impl Journal {
     }
 
     /// What is known, the oldest first.
-    pub fn entries(&self) -> impl DoubleEndedIterator<Item = &(u64, Given)> {
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = &(u64, Given<C>)> {
         self.given.iter()
     }
 
     /// Takes all entries from a number on; `None` when some of them are not known any more.
-    pub fn split_off(&mut self, entry: u64) -> Option<VecDeque<(u64, Given)>> {
+    pub fn split_off(&mut self, entry: u64) -> Option<VecDeque<(u64, Given<C>)>> {
         let place = usize::try_from(entry.checked_sub(self.first)?).ok()?;
         let split = (place <= self.given.len()).then(|| self.given.split_off(place))?;
         self.text -= split.iter().map(|(_, given)| given.text()).sum::<usize>();
@@ -87,10 +98,11 @@ impl Journal {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
     use super::*;
+    use bahn_tnc::{Command, Dnc};
 
     #[test]
     fn what_is_forgotten_is_not_repeated() {
-        let mut journal = Journal::default();
+        let mut journal: Journal = Journal::default();
         for time in 0..GIVEN_MAX as u64 + 2 {
             journal.add(time, Given::AtOnce(Source::Script, Action::tap("a")));
         }
@@ -105,7 +117,7 @@ mod tests {
     /// Of a program that is transferred while it runs no more is known than there is room for.
     #[test]
     fn program_text_does_not_pile_up() {
-        let mut journal = Journal::default();
+        let mut journal: Journal = Journal::default();
         let text = || Action::Command(0, Command::Dnc(Dnc::Text(vec![b' '; 1 << 16].into())));
         for time in 0..1000 {
             journal.add(time, Given::AtOnce(Source::Script, text()));

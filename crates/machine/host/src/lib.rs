@@ -48,11 +48,9 @@
 
 mod action;
 mod any_plant;
-mod background;
 pub mod backup;
 mod called;
 mod columns;
-mod digitizing;
 mod edges;
 pub mod eprom;
 mod error;
@@ -62,11 +60,11 @@ mod feed;
 mod feeds;
 pub mod files;
 mod host;
+mod hosted;
 mod journal;
 mod kept;
 mod log;
 pub mod logic_diagram;
-mod machine900;
 mod machine_folder;
 mod moment;
 mod notice;
@@ -83,15 +81,16 @@ mod plc_source;
 pub mod pocket_table;
 pub mod point_table;
 mod power_on;
-mod reading;
 mod retained;
 pub mod s_records;
 mod saved;
 mod script;
 mod simulated;
+mod system900;
 mod table_edit;
 mod table_kind;
 mod threads;
+mod tnc;
 pub mod tool_table;
 
 pub use action::{Action, ActionError, Answer, Source};
@@ -106,11 +105,11 @@ pub use error::HostError;
 pub use executed_path::{ElementId, ExecutedPath};
 pub use expectation::{Expectation, Presence, Relation, Run, Tested, run_name};
 pub use feed::{Next, Reader};
-pub use host::Host;
+pub use host::{Host, HostFamily};
+pub use hosted::{HostNotice, Hosted};
 pub use log::{Log, LogFile, Sink, is_whole};
 pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};
-pub use machine900::Machine900;
 pub use threads::{ThreadCut, Threads};
 /// Reads a tool table, for fuzzing; errors name their lines, 0 is the table as a whole.
 #[doc(hidden)]
@@ -145,11 +144,15 @@ pub use operable::{Operable, StopChain, TrueAxis, Wired};
 pub use operator::{Attendance, Job, Operator, Phase};
 pub use orders::{Desk, Order, When};
 pub use pace::{Clock, Late, Lateness};
-pub use play::{Case, FailedExpectation, Play, Verdict};
+pub use play::{Case, FailedExpectation, Play, Scripted, Verdict};
 pub use plc_source::PlcSource;
 pub use power_on::{ChannelPowerOn, PowerOn};
 pub use retained::Retained;
 pub use saved::{Course, Saved, Timeline};
 pub use script::{Line, Script, ScriptAction, Stage};
+pub use system900::{
+    Action900, By, Command900, Expectation900, Host900, IdealMachine, Job900, Machine900, Notice900,
+    Operator900, PowerOn900, Programs900, Script900, Stage900, State900,
+};
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};

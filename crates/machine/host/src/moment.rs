@@ -2,55 +2,46 @@
 
 use bahn_tnc::Control;
 
-use crate::digitizing::Digitizing;
-use crate::notice::Before;
+use crate::hosted::Hosted;
 use crate::operable::Operable;
-use crate::operator::Operator;
 use crate::orders::Waiting;
 
 /// Control, plant, operator and what is ordered: all that decides how a machine goes on, and what is kept to go back.
 #[derive(Clone)]
-pub(crate) struct Moment<P> {
-    pub control: Control,
+pub(crate) struct Moment<P, C: Hosted = Control> {
+    pub control: C,
     pub plant: P,
-    pub operator: Operator,
-    pub waiting: Waiting,
-    pub before: Before,
-    /// The list of machine parameters with which the control is to be started anew.
-    pub restart: Option<String>,
-    /// What each channel digitizes.
-    pub digitizing: Vec<Digitizing>,
+    pub operator: C::Operator,
+    pub waiting: Waiting<C::Command>,
+    /// What the family's host knows beside.
+    pub aside: C::Aside,
 }
 
-impl<P: Operable> Moment<P> {
-    /// The moment of power-on: nothing is waited for or digitized.
-    pub fn new(control: Control, plant: P, operator: Operator) -> Moment<P> {
+impl<P: Operable, C: Hosted> Moment<P, C> {
+    /// The moment of power-on: nothing is waited for.
+    pub fn new(control: C, plant: P, operator: C::Operator) -> Moment<P, C> {
         Moment {
-            digitizing: vec![Digitizing::default(); control.channels()],
+            aside: control.aside(),
             control,
             plant,
             operator,
             waiting: Waiting::default(),
-            before: Before::default(),
-            restart: None,
         }
     }
 
     /// The same once more; `None` where the plant cannot be copied.
-    pub fn copied(&self) -> Option<Moment<P>> {
+    pub fn copied(&self) -> Option<Moment<P, C>> {
         self.plant.copied().map(|plant| self.with(plant))
     }
 
     /// The same with a copy of its plant.
-    pub fn with(&self, plant: P) -> Moment<P> {
+    pub fn with(&self, plant: P) -> Moment<P, C> {
         Moment {
             plant,
             control: self.control.clone(),
             operator: self.operator.clone(),
             waiting: self.waiting.clone(),
-            before: self.before.clone(),
-            restart: self.restart.clone(),
-            digitizing: self.digitizing.clone(),
+            aside: self.aside.clone(),
         }
     }
 }

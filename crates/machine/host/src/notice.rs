@@ -60,13 +60,13 @@ pub enum Why {
 
 /// A notice with its time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stamped {
+pub struct Stamped<N = Notice> {
     /// Time since power-on, µs.
     pub time_us: u64,
     /// The channel in which it happened, from 0; 0 for the machine as a whole, too.
     pub channel: usize,
     /// What happened then.
-    pub notice: Notice,
+    pub notice: N,
 }
 
 /// What was so after the last cycle.

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use bahn_tnc::Command;
+
 use crate::action::{Action, Source};
 use crate::error::HostError;
 
@@ -11,13 +13,13 @@ pub(crate) const ORDERS_MAX: usize = 4096;
 
 /// Something to be done.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Order {
+pub struct Order<C = Command> {
     /// Who wants it done.
     pub source: Source,
     /// The cycle before which it is done.
     pub when: When,
     /// What is done then.
-    pub action: Action,
+    pub action: Action<C>,
 }
 
 /// When something is to be done.
@@ -30,15 +32,21 @@ pub enum When {
 }
 
 /// Where orders are given, from any thread.
-#[derive(Clone, Debug, Default)]
-pub struct Desk(Arc<Mutex<VecDeque<Order>>>);
+#[derive(Clone, Debug)]
+pub struct Desk<C = Command>(Arc<Mutex<VecDeque<Order<C>>>>);
 
-impl Desk {
+impl<C> Default for Desk<C> {
+    fn default() -> Desk<C> {
+        Desk(Arc::default())
+    }
+}
+
+impl<C> Desk<C> {
     /// Gives an order.
     ///
     /// # Errors
     /// [`HostError::Busy`] when too many wait.
-    pub fn give(&self, source: Source, when: When, action: Action) -> Result<(), HostError> {
+    pub fn give(&self, source: Source, when: When, action: Action<C>) -> Result<(), HostError> {
         let mut orders = self.orders();
         if orders.len() >= ORDERS_MAX {
             return Err(HostError::Busy);
@@ -48,25 +56,34 @@ impl Desk {
     }
 
     /// The order that was given first.
-    pub(crate) fn take(&self) -> Option<Order> {
+    pub(crate) fn take(&self) -> Option<Order<C>> {
         self.orders().pop_front()
     }
 
-    fn orders(&self) -> MutexGuard<'_, VecDeque<Order>> {
+    fn orders(&self) -> MutexGuard<'_, VecDeque<Order<C>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// Orders whose time has not come, by time and number.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Waiting {
-    orders: BTreeMap<(u64, u64), Order>,
+#[derive(Clone, Debug)]
+pub(crate) struct Waiting<C = Command> {
+    orders: BTreeMap<(u64, u64), Order<C>>,
     count: u64,
 }
 
-impl Waiting {
+impl<C> Default for Waiting<C> {
+    fn default() -> Waiting<C> {
+        Waiting {
+            orders: BTreeMap::new(),
+            count: 0,
+        }
+    }
+}
+
+impl<C> Waiting<C> {
     /// Takes an order that was given at `now_us`; `false` when too many wait.
-    pub fn add(&mut self, order: Order, now_us: u64) -> bool {
+    pub fn add(&mut self, order: Order<C>, now_us: u64) -> bool {
         if self.orders.len() >= ORDERS_MAX {
             return false;
         }
@@ -80,7 +97,7 @@ impl Waiting {
     }
 
     /// The next one that is due.
-    pub fn due(&mut self, now_us: u64) -> Option<Order> {
+    pub fn due(&mut self, now_us: u64) -> Option<Order<C>> {
         let entry = self.orders.first_entry()?;
         let (time_us, _) = *entry.key();
         (time_us <= now_us).then(|| entry.remove())
@@ -101,7 +118,7 @@ mod tests {
 
     #[test]
     fn orders_are_due_in_the_order_of_time_and_of_giving() {
-        let mut waiting = Waiting::default();
+        let mut waiting: Waiting = Waiting::default();
         let given = [
             (When::At(300), "c"),
             (When::Now, "a"),
@@ -125,7 +142,7 @@ mod tests {
 
     #[test]
     fn no_queue_grows_without_bound() {
-        let (desk, mut waiting) = (Desk::default(), Waiting::default());
+        let (desk, mut waiting): (Desk, Waiting) = (Desk::default(), Waiting::default());
         for _ in 0..ORDERS_MAX {
             assert_eq!(desk.give(Source::Script, When::Now, Action::tap("a")), Ok(()));
             assert!(waiting.add(order(When::At(1), "a"), 0));

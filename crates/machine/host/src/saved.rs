@@ -6,24 +6,25 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use bahn_tnc::Control;
+
 use crate::action::{Action, Source};
-use crate::background::Background;
 use crate::error::HostError;
-use crate::host::Host;
+use crate::host::{Host, HostFamily};
+use crate::hosted::{HostNotice, Hosted};
 use crate::journal::{Given, Journal};
 use crate::moment::Moment;
-use crate::notice::Notice;
 use crate::operable::Operable;
 
 /// Control, plant, operator and what is ordered, as they were.
 #[derive(Clone)]
-pub struct Saved<P> {
-    moment: Moment<P>,
+pub struct Saved<P, C: Hosted = Control> {
+    moment: Moment<P, C>,
     /// The first entry of the journal after it.
     entry: u64,
 }
 
-impl<P> Saved<P> {
+impl<P, C: Hosted> Saved<P, C> {
     /// When it was, µs since power-on.
     pub fn time_us(&self) -> u64 {
         self.moment.control.time_us()
@@ -33,21 +34,21 @@ impl<P> Saved<P> {
 /// What was given since power-on, and how far the machine came with it: what is kept of it can be gone through again
 /// when the machine has gone another way.
 #[derive(Clone, Debug)]
-pub struct Course {
-    journal: Journal,
+pub struct Course<C: Hosted = Control> {
+    journal: Journal<C>,
     end_us: u64,
 }
 
-impl Course {
+impl<C: Hosted> Course<C> {
     /// How far the machine came, µs since power-on.
     pub fn end_us(&self) -> u64 {
         self.end_us
     }
 }
 
-impl<P: Operable> Host<P> {
+impl<P: Operable, C: HostFamily> Host<P, C> {
     /// What was given until now.
-    pub fn course(&self) -> Course {
+    pub fn course(&self) -> Course<C> {
         Course {
             journal: self.journal.clone(),
             end_us: self.now.control.time_us(),
@@ -61,17 +62,17 @@ impl<P: Operable> Host<P> {
 
     /// The actions that were given in the course that led here, with their times, µs since power-on, and by whom, the
     /// oldest first; of very many the oldest are forgotten.
-    pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Action)> {
+    pub fn given(&self) -> impl DoubleEndedIterator<Item = (u64, &Source, &Action<C::Command>)> {
         let entries = self.journal.entries();
         entries.filter_map(|(time, given)| given.action().map(|(source, action)| (*time, source, action)))
     }
 }
 
-impl<P: Operable> Host<P> {
+impl<P: Operable, C: HostFamily> Host<P, C> {
     /// Everything as it is now; `None` where the plant cannot be copied.
-    pub fn save(&mut self) -> Option<Saved<P>> {
+    pub fn save(&mut self) -> Option<Saved<P, C>> {
         let plant = self.now.plant.copied()?;
-        self.background.settle(&mut self.now.control);
+        C::settle(self);
         Some(Saved {
             moment: self.now.with(plant),
             entry: self.journal.end(),
@@ -79,11 +80,11 @@ impl<P: Operable> Host<P> {
     }
 
     /// Goes back to a moment. What was given since is forgotten, what is told goes on after
-    /// [`Notice::Restored`], and what survives power-off is that of the moment.
+    /// [`Notice::Restored`](crate::Notice::Restored), and what survives power-off is that of the moment.
     ///
     /// # Errors
     /// [`HostError::Logged`], [`HostError::StaysWhereItIs`], [`HostError::NotStored`].
-    pub fn restore(&mut self, saved: &Saved<P>) -> Result<(), HostError> {
+    pub fn restore(&mut self, saved: &Saved<P, C>) -> Result<(), HostError> {
         self.replay(saved, saved.time_us())
     }
 
@@ -93,7 +94,7 @@ impl<P: Operable> Host<P> {
     /// # Errors
     /// [`HostError::Logged`], [`HostError::StaysWhereItIs`], [`HostError::Forgotten`], [`HostError::NotStored`],
     /// [`HostError::BrokenOff`]. In the first three cases everything stays as it is.
-    pub fn replay(&mut self, saved: &Saved<P>, time_us: u64) -> Result<(), HostError> {
+    pub fn replay(&mut self, saved: &Saved<P, C>, time_us: u64) -> Result<(), HostError> {
         if self.is_logged() {
             return Err(HostError::Logged);
         }
@@ -110,8 +111,8 @@ impl<P: Operable> Host<P> {
     /// As [`Host::replay`].
     pub fn replay_course(
         &mut self,
-        course: &Course,
-        saved: &Saved<P>,
+        course: &Course<C>,
+        saved: &Saved<P, C>,
         time_us: u64,
     ) -> Result<(), HostError> {
         if self.is_logged() {
@@ -128,16 +129,13 @@ impl<P: Operable> Host<P> {
     /// Goes back and gives again what was given until a time; `whole`: also what was given at this time.
     fn repeat(
         &mut self,
-        then: Moment<P>,
-        mut given: VecDeque<(u64, Given)>,
+        then: Moment<P, C>,
+        mut given: VecDeque<(u64, Given<C>)>,
         end_us: u64,
         whole: bool,
     ) -> Result<(), HostError> {
         self.now = then;
-        // What is repeated is read as it comes, so that it is the same.
-        self.now.control.read_beside(false);
-        // A computation that is on its way belongs to the control that is left.
-        self.background = Background::default();
+        C::begin_again(self);
         self.repeats = true;
         let repeated = loop {
             let now = self.now.control.time_us();
@@ -151,7 +149,7 @@ impl<P: Operable> Host<P> {
                     Given::AtOnce(source, action) => drop(self.execute(source, action)),
                     Given::Order(order) => self.take(order),
                     Given::Renewed(renewed) => {
-                        self.take_over(renewed);
+                        C::take_over(self, renewed);
                     }
                 }
             }
@@ -164,30 +162,26 @@ impl<P: Operable> Host<P> {
             if let Err(error) = self.step() {
                 break Err(error);
             }
-            // Whoever follows the path has it already.
-            for channel in 0..self.control().channels() {
-                drop((self.take_dropped_path(channel), self.take_path(channel)));
-                drop(self.take_warnings(channel));
-            }
+            C::pass_over(self);
         };
         self.repeats = false;
         self.reset_clock();
-        self.tell(Notice::Restored);
+        self.tell(HostNotice::Restored);
         repeated.and_then(|()| self.store())
     }
 }
 
 /// Saved moments of a run at regular times, at most so many: when there are more, every other one goes and the
 /// times between them double. A copy shares them.
-pub struct Timeline<P> {
-    moments: Vec<Arc<Saved<P>>>,
+pub struct Timeline<P, C: Hosted = Control> {
+    moments: Vec<Arc<Saved<P, C>>>,
     every_us: u64,
     most: usize,
 }
 
-impl<P: Operable> Timeline<P> {
+impl<P: Operable, C: HostFamily> Timeline<P, C> {
     /// Saves every so many µs of the machine, at most so many moments and at least two.
-    pub fn new(every_us: u64, most: usize) -> Timeline<P> {
+    pub fn new(every_us: u64, most: usize) -> Timeline<P, C> {
         Timeline {
             moments: Vec::new(),
             every_us: every_us.max(1),
@@ -196,8 +190,8 @@ impl<P: Operable> Timeline<P> {
     }
 
     /// Saves the moment when it is time; to be called after every cycle.
-    pub fn follow(&mut self, host: &mut Host<P>) {
-        let now = host.control().time_us();
+    pub fn follow(&mut self, host: &mut Host<P, C>) {
+        let now = host.now.control.time_us();
         // Moments of a time that was left lead nowhere.
         while self.moments.pop_if(|last| last.time_us() > now).is_some() {}
         let due = self
@@ -215,7 +209,7 @@ impl<P: Operable> Timeline<P> {
     }
 
     /// The last saved moment up to a time.
-    pub fn nearest(&self, time_us: u64) -> Option<&Saved<P>> {
+    pub fn nearest(&self, time_us: u64) -> Option<&Saved<P, C>> {
         let mut moments = self.moments.iter();
         moments
             .rfind(|moment| moment.time_us() <= time_us)
@@ -243,8 +237,8 @@ impl<P: Operable> Timeline<P> {
     }
 }
 
-impl<P> Clone for Timeline<P> {
-    fn clone(&self) -> Timeline<P> {
+impl<P, C: Hosted> Clone for Timeline<P, C> {
+    fn clone(&self) -> Timeline<P, C> {
         Timeline {
             moments: self.moments.clone(),
             ..*self

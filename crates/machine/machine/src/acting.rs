@@ -122,6 +122,15 @@ impl Machine {
             .ok_or_else(|| no("part", "magazine", std::iter::empty()))
     }
 
+    /// Axes of a described machine have letters.
+    fn no_physical_axis(&self, number: u8) -> EventError {
+        EventError::Name {
+            what: "axis",
+            name: number.to_string(),
+            known: self.mechanism.axes.iter().map(|axis| axis.letter).collect(),
+        }
+    }
+
     fn axis_mut(&mut self, letter: char) -> Result<&mut Axis, EventError> {
         let known: String = self.mechanism.axes.iter().map(|axis| axis.letter).collect();
         self.mechanism
@@ -153,6 +162,7 @@ impl Machine {
             Fault::Motor(letter) => return self.lose_motor(*letter),
             Fault::Drive('S', kind) => self.spindle_mut()?.fault = Some(*kind),
             Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
+            Fault::PhysicalDrive(number) => return Err(self.no_physical_axis(*number)),
             Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
             Fault::Input(input, fault) => {
                 self.plc.stick(*input, *fault);

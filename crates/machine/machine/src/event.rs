@@ -102,6 +102,8 @@ pub enum Fault {
     Motor(char),
     /// The drive of an axis, or of the spindle (`S`).
     Drive(char, DriveFault),
+    /// The drive of a physical axis, from 1, of a machine of which nothing else is known.
+    PhysicalDrive(u8),
     /// The offset of the amplifier of an axis jumps to this voltage, V.
     Offset(char, f64),
     /// The contact of a PLC input fails.
@@ -355,6 +357,9 @@ fn fault(rest: &[&str]) -> Result<Fault, EventError> {
                 _ => return Err(EventError::Form(FORM)),
             };
             Ok(Fault::Encoder(letter(axis, FORM)?, kind))
+        }
+        ["drive", axis, "dead"] if axis.parse::<u8>().is_ok() => {
+            Ok(Fault::PhysicalDrive(number(axis, 1, 32)? as u8))
         }
         ["drive", axis, kind] => {
             const FORM: &str = "fault drive AXIS|S dead|runaway|reversed|slow";

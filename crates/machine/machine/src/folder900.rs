@@ -1,8 +1,9 @@
 //! The folder of a machine with a System 900: which file is what.
 //!
-//! Decision: A folder belongs to a System 900 when its `machine.toml` has the key `control`, which no other family needs
+//! Decision: A folder belongs to a System 900 when its `machine.toml` says so with the key `control`, which no
+//! other family has
 
-use bahn_text::{Diagnostic, Span};
+use bahn_text::{Diagnostic, Span, path_below};
 
 use crate::MachineFolder;
 use crate::reader::{Reader, Section};
@@ -25,7 +26,51 @@ pub struct Folder900 {
     pub parameters: String,
     /// Folder of part programs and cycles.
     pub programs: String,
+    /// The machine, as far as it is simulated.
+    pub plant: Plant900,
+    /// Folder of what survives power-off.
+    pub state: String,
+    /// What answers in the place of a PLC.
+    pub answers: Vec<Answer900>,
 }
+
+/// The machine of a System 900.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Plant900 {
+    /// `"ideal"`: of which nothing is known but its parameters.
+    Ideal,
+    /// A file that describes it.
+    File(String),
+}
+
+/// What may answer in the place of a PLC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer900 {
+    /// `"enable"`: loops and axes are enabled, and whether they are referenced.
+    Enable,
+    /// `"mode"`: the mode that is asked for is given.
+    Mode,
+    /// `"start"`: a start or stop that is asked for is given.
+    Start,
+    /// `"m"`: M functions with stop are acknowledged.
+    M,
+    /// `"tools"`: tools are changed.
+    Tools,
+}
+
+impl Answer900 {
+    /// All of them, with their names.
+    pub const ALL: [(&str, Answer900); 5] = [
+        ("enable", Answer900::Enable),
+        ("mode", Answer900::Mode),
+        ("start", Answer900::Start),
+        ("m", Answer900::M),
+        ("tools", Answer900::Tools),
+    ];
+}
+
+/// What an ideal machine is called.
+const IDEAL: &str = "ideal";
 
 impl Folder900 {
     /// What `control` says.
@@ -36,8 +81,9 @@ impl Folder900 {
     pub fn named_at(text: &str) -> Option<Span> {
         let reader = Reader::new(text);
         let table = reader.parse();
-        let key = table.get_ref().get_key_value("control")?.0;
-        Some(reader.place(key.span().start))
+        let (key, value) = table.get_ref().get_key_value("control")?;
+        let is_named = value.get_ref().as_str() == Some(Folder900::CONTROL);
+        is_named.then(|| reader.place(key.span().start))
     }
 
     /// Reads the text of `machine.toml` as far as it can be understood, with all faults in its order. What is missing is empty.
@@ -51,22 +97,25 @@ impl Folder900 {
             }
             root.text(key).unwrap_or_default().to_owned()
         };
-        if root
-            .text("control")
-            .is_some_and(|control| control != Folder900::CONTROL)
-        {
+        // That it is a System 900 is known.
+        root.text("control");
+        let parameters = needed("parameters");
+        if root.has("parameters") && path_below(&parameters).is_none() {
             root.fault_at(
-                "control",
-                format!(
-                    "the only control here is \"{}\"; a TNC is named by `model`",
-                    Folder900::CONTROL
-                ),
+                "parameters",
+                "`parameters` names no data file of the folder".to_owned(),
             );
         }
         let folder = Folder900 {
             name: needed("name"),
-            parameters: needed("parameters"),
+            parameters: path_below(&parameters).unwrap_or_default(),
             programs: root.text("programs").unwrap_or("programs").to_owned(),
+            plant: match root.text("plant").unwrap_or(IDEAL) {
+                IDEAL => Plant900::Ideal,
+                file => Plant900::File(file.to_owned()),
+            },
+            state: root.text("state").unwrap_or("state").to_owned(),
+            answers: answers(&reader, &root),
         };
         root.finish();
         (folder, reader.faults())
@@ -74,4 +123,22 @@ impl Folder900 {
 
     /// The name of the file in the folder.
     pub const FILE: &str = MachineFolder::FILE;
+}
+
+/// All of them where the key is missing.
+fn answers(reader: &Reader, root: &Section) -> Vec<Answer900> {
+    if !root.has("answers") {
+        return Answer900::ALL.map(|(_, answer)| answer).to_vec();
+    }
+    let mut all = Vec::new();
+    for (at, name) in root.texts("answers") {
+        match Answer900::ALL.iter().find(|(known, _)| *known == name) {
+            Some((_, answer)) => all.push(*answer),
+            None => {
+                let known = Answer900::ALL.map(|(known, _)| known).join(", ");
+                reader.fault(at, format!("`{name}` is no answer; there are {known}"));
+            }
+        }
+    }
+    all
 }

@@ -71,7 +71,7 @@ pub use encoder::EncoderFault;
 pub use equipment::{EquipmentFolder, Said};
 pub use event::{Button, Event, EventError, Fault, KeyAction, Put};
 pub use folder::{ChannelFolder, FunctionFolder, HandOverFolder, MachineFolder, ModuleFolder, OperatorKeys};
-pub use folder900::Folder900;
+pub use folder900::{Answer900, Folder900, Plant900};
 pub use machine::Machine;
 pub use magazine::MagazineState;
 pub use mechanics::{AxisPlace, DevicePlace, MagazinePlace, Mechanics, SpindlePlace};

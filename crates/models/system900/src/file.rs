@@ -51,6 +51,14 @@ pub struct DataFile {
     active: u8,
 }
 
+/// What a battery keeps: the parameters with the values that a data file gives some of them, and what is wrong with its lines.
+pub(crate) fn over(bytes: &[u8], memory: &Memory) -> (Memory, Vec<Diagnostic>) {
+    let (text, _) = Encoding::read(bytes);
+    let mut reader = Reader::over(&text, memory.clone(), memory.channels());
+    reader.read();
+    (reader.memory, reader.faults)
+}
+
 impl DataFile {
     /// Reads a file; whatever it holds, what can be read is read.
     pub fn read(bytes: &[u8]) -> DataFile {
@@ -153,7 +161,11 @@ struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     fn new(text: &'t str) -> Reader<'t> {
-        let mut memory = Memory::new();
+        Reader::over(text, Memory::new(), 1)
+    }
+
+    /// What gives values to parameters that have some, of so many channels.
+    fn over(text: &'t str, mut memory: Memory, active: u8) -> Reader<'t> {
         memory.resize(PARAMETERS_MAX);
         Reader {
             text,
@@ -162,7 +174,7 @@ impl<'t> Reader<'t> {
             entries: Vec::new(),
             last: HashMap::new(),
             places: Vec::new(),
-            active: 1,
+            active,
             used: [false; CHANNELS_MAX as usize],
         }
     }

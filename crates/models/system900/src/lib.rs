@@ -32,6 +32,7 @@
 
 mod array;
 mod axis_block;
+mod battery;
 mod channel_block;
 mod channels;
 mod check;
@@ -92,7 +93,7 @@ pub use messages::{
 pub use name::{Name, NoName};
 pub use networks::{Together, network, together};
 pub use outbox::{News, Receiver, Transfer};
-pub use path_data::{PathData, ToolBlock, rounded};
+pub use path_data::{PathData, ToolBlock};
 pub use programs::{NoProgramName, ProgramName, Programs};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
 pub use running::{AxisCommand, Routine, Running};

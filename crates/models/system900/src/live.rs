@@ -7,7 +7,9 @@ use crate::array::Cell;
 use crate::axis_block::AxisParameter;
 use crate::channel_block::ChannelParameter;
 use crate::memory::{Memory, Place};
+use crate::name::Name;
 use crate::numbers::{AXES, AXIS, AXIS_BLOCK, AXIS_OWN, FIXED, FIXED_COUNT, LOCK_SWITCHES, SHARED};
+use crate::table::row;
 use crate::value::DECIMALS_MAX;
 
 /// What a place means to a running control.
@@ -26,6 +28,40 @@ pub enum Meaning {
 }
 
 impl Memory {
+    /// The unit of a parameter, as its axis turns or not; empty where the table names none.
+    ///
+    /// ```
+    /// use bahn_system900::DataFile;
+    /// let file = DataFile::read(b"q102: 10000\nq103: 5000\nq110: $01010058\nq111: $02020043\nP12001: 0\nP12201: 1\n");
+    /// let unit = |name: &str| name.parse().map(|name| file.memory().unit(name));
+    /// assert_eq!((unit("P12151")?, unit("P12351")?, unit("P8685")?), ("mm", "degree", ""));
+    /// # Ok::<(), bahn_system900::NoName>(())
+    /// ```
+    pub fn unit(&self, name: Name) -> &'static str {
+        let unit = row(name).map_or("", |row| row.unit);
+        let turns = self.place(name).ok().and_then(|place| self.axis_of(place));
+        let turns = turns.map(|physical| self.of_axis(physical, AxisParameter::Rotary).whole() == Some(1));
+        match (unit.split_once(", "), turns) {
+            (Some((linear, _)), Some(false)) => linear,
+            (Some((_, rotary)), Some(true)) => rotary,
+            _ => unit,
+        }
+    }
+
+    /// The physical axis whose parameter lies at a place.
+    fn axis_of(&self, place: Place) -> Option<u8> {
+        match place {
+            Place::Q(_) => match self.meaning(place) {
+                Meaning::OfAxis(physical, _) => Some(physical),
+                _ => None,
+            },
+            Place::OfChannel(channel, logical, _) => {
+                let mut axes = self.axes_of(channel);
+                axes.find(|(of, _)| *of == logical).map(|(_, physical)| physical)
+            }
+        }
+    }
+
     /// What a place means.
     pub fn meaning(&self, place: Place) -> Meaning {
         let Place::Q(number) = place else {

@@ -36,7 +36,7 @@
 //! count from where it began
 //!
 //! Decision: On a machine a digitized program replaces none: ENTRY VALUE INCORRECT at its block; it is written in one
-//! step when the range is scanned, and a scan that is broken off leaves nothing (also `host/src/digitizing.rs`)
+//! step when the range is scanned, and a scan that is broken off leaves nothing (also `host/src/tnc/digitizing.rs`)
 
 mod absent;
 mod arc;

@@ -1,12 +1,10 @@
 //! `bahn plc watch`: the table of operands while the program runs or is stepped [000:11436-11460].
 
-mod breakpoint;
 mod entry;
 mod screen;
 mod state;
 #[cfg(test)]
 mod tests;
-mod trend;
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -16,16 +14,14 @@ use bahn_host::Retained;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use bahn_report::plc::{Halt, Subject, operands as named_by};
+use bahn_report::plc::{Breakpoints, Halt, Subject, Trend, operands as named_by};
 
 use super::bench::set_operands;
 use super::options::WatchOptions;
 use super::subject;
 use crate::{Outcome, UsageError};
 use bahn_host::{Assignment, Content, Operand};
-use breakpoint::Breakpoints;
 use entry::Entry;
-use trend::Trend;
 
 use state::{LastInstruction, Watch};
 

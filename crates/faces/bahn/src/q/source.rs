@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use bahn_machine::Folder900;
 use bahn_system900::DataFile;
-use bahn_text::{Diagnostic, Severity, decode, path_below};
+use bahn_text::{Diagnostic, Severity, decode};
 
 use crate::{UsageError, diagnostics, files};
 
@@ -18,20 +19,20 @@ pub(super) fn read(path: &Path) -> Result<(DataFile, PathBuf), UsageError> {
 
 /// The data file that the description of a machine names.
 fn of_machine(folder: &Path) -> Result<PathBuf, UsageError> {
-    let description = folder.join("machine.toml");
+    let description = folder.join(Folder900::FILE);
     let refused = |why: &str| UsageError::new(format!("{}: {why}", description.display()));
-    let table: toml::Table = decode(&files::read_description(&description)?)
-        .parse()
-        .map_err(|error: toml::de::Error| refused(error.message()))?;
-    let word = |key: &str| table.get(key).and_then(toml::Value::as_str);
-    if word("control") != Some("system900") {
+    let text = decode(&files::read_description(&description)?);
+    if Folder900::named_at(&text).is_none() {
         return Err(refused(
             "it is no machine of a System 900: `control` is not \"system900\"",
         ));
     }
-    let file = word("parameters").and_then(path_below);
-    let file = file.ok_or_else(|| refused("`parameters` names no data file of the folder"))?;
-    Ok(folder.join(file))
+    // What else is wrong with it says `bahn machine check`.
+    let (described, _) = Folder900::read(&text);
+    match described.parameters.is_empty() {
+        true => Err(refused("`parameters` names no data file of the folder")),
+        false => Ok(folder.join(described.parameters)),
+    }
 }
 
 /// A data file all of whose lines can be read; `None` when its faults have been shown instead.

@@ -1,5 +1,6 @@
 //! `bahn run`: a part program on the simulated machine.
 //!
+//! - `system900`: the same on a machine with a System 900;
 //! - `options`: options and help text; `oscilloscope`: what is asked of the control's oscilloscope; `module`: the positioning
 //!   module that goes along.
 //!
@@ -8,14 +9,16 @@
 mod module;
 mod options;
 mod oscilloscope;
+mod system900;
 
+use options::SignalName;
 pub(crate) use options::{EXAMPLES, RunMachineOptions};
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bahn_host::{
-    Action, Attendance, Clock, FolderPrograms, Host, Job, LoadedMachine, LogFile, Observable, Observed,
+    Action, Clock, FolderPrograms, Host, Job, LoadedMachine, LogFile, Machine900, Observable, Observed,
     Operator, Play, PowerOn, Script, Source, Stage, is_whole,
 };
 use bahn_panel::Waits;
@@ -40,6 +43,9 @@ use crate::{Outcome, UsageError, console, files, settings};
 /// Runs a program on a machine and reports.
 pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
+    if Machine900::is_meant(&options.machine) {
+        return system900::command(options);
+    }
     let mut machine = match machine_folder::load_with_tools(&options.machine, options.run.tools.as_deref())? {
         Ok(machine) => machine,
         Err(faults) => return refused(&faults),
@@ -47,6 +53,11 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     files::keep_inputs(&inputs, &options.written())?;
+    if !options.read.is_empty() {
+        return Err(UsageError::new(
+            "--read takes parameters of a System 900, and the machine has a TNC".to_owned(),
+        ));
+    }
     let mut programs = all_programs(options, &machine)?;
     let (beside, script) = match load_beside(options, &machine)? {
         Ok(found) => found,
@@ -126,7 +137,10 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
 fn keep_pace(options: &RunMachineOptions, script: &Script, needs_programs: bool, host: &mut Host) {
     if options.run.realtime {
         host.set_clock(Clock::Wall(1.0));
-        let q = |signal: &Observed| matches!(signal.what, Observable::Signal(Signal::Q(_)));
+        let q = |signal: &SignalName| {
+            let observed = signal.observed.as_ref();
+            observed.is_ok_and(|signal| matches!(signal.what, Observable::Signal(Signal::Q(_))))
+        };
         let looks = options.recording.signals.iter().any(q) || !script.lines.is_empty();
         if looks || needs_programs {
             host.watch_programs();
@@ -267,15 +281,7 @@ fn operator(
     programs: &[Arc<FolderPrograms>],
     start_block: Option<u32>,
 ) -> Operator {
-    let attendance = options
-        .run
-        .operator
-        .map(Attendance::from)
-        .unwrap_or(match &options.run {
-            run if run.replay.is_some() => Attendance::Absent,
-            run if run.script.is_some() => Attendance::Start,
-            _ => Attendance::Full,
-        });
+    let attendance = options.run.attendance();
     let mode = match options.run.single_block {
         true => Mode::SingleBlock,
         false => Mode::FullSequence,
@@ -307,7 +313,8 @@ fn recording(
         return Ok(None);
     };
     let of_module = module.map(|beside| beside.module.host.control());
-    for signal in &wanted.signals {
+    let observed: Vec<Observed> = wanted.observed()?;
+    for signal in &observed {
         let control = match signal.module {
             true => of_module.ok_or_else(|| {
                 UsageError::new(format!(
@@ -344,10 +351,9 @@ fn recording(
             )));
         }
     }
-    let signals = if wanted.signals.is_empty() {
-        usual_signals(control)
-    } else {
-        wanted.signals.clone()
+    let signals = match observed.is_empty() {
+        true => usual_signals(control),
+        false => observed,
     };
     let every_us = wanted.every.map_or(0, |ms| u64::from(ms) * 1000);
     Ok(Some(Recording::create(path, signals, every_us, control.model())?))

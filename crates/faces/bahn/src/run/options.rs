@@ -1,11 +1,14 @@
 //! Options and help texts of `bahn run`.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use bahn_host::{Attendance, Observed};
+use bahn_system900::Name;
 use clap::{Args, ValueHint};
 
 use super::oscilloscope::OscilloscopeOptions;
+use crate::UsageError;
 use crate::options::{Format, InchFeedOption, OutputOptions, override_percent, seconds};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -94,6 +97,10 @@ pub(crate) struct RunMachineOptions {
     /// How the report is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t)]
     pub format: Format,
+
+    /// Parameters of a System 900 that the report tells, as P12151 or 2:P8685.
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    pub read: Vec<Name>,
 
     #[command(flatten)]
     pub run: RunControl,
@@ -221,6 +228,18 @@ impl From<AttendanceOption> for Attendance {
     }
 }
 
+impl RunControl {
+    /// What the operator does: with a script he starts the program alone, with a log nothing.
+    pub fn attendance(&self) -> Attendance {
+        let usual = match (&self.replay, &self.script) {
+            (Some(_), _) => Attendance::Absent,
+            (None, Some(_)) => Attendance::Start,
+            (None, None) => Attendance::Full,
+        };
+        self.operator.map_or(usual, Attendance::from)
+    }
+}
+
 /// What of the run is recorded, and how often.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Recording")]
@@ -232,11 +251,64 @@ pub(crate) struct RecordingOptions {
     /// X.n-actual, X.n-nominal, X.n-int (digital speed controller), X.table and X.force (what only the plant knows), path.speed,
     /// path.block, path.distance, S.rpm, S.volts, S.angle, output.1 to output.5, output.S, mode, run, tool, probe.length,
     /// probe.radius, probe.angle, probe.touches, probe.circle, Q5, X41/34, X42/4, operands of the PLC like M2045, I4, W260, of
-    /// the second channel as 2:X.actual, of the module as module:X.actual; by
+    /// the second channel as 2:X.actual, of the module as module:X.actual; parameters of a System 900, as P12151 or 2:P8685; by
     /// default speeds, positions, lags, and the handshake of M functions. `bahn machine list` says what each is.
     #[arg(long, value_name = "SIGNAL,..", value_delimiter = ',', requires = "record")]
-    pub signals: Vec<Observed>,
+    pub signals: Vec<SignalName>,
     /// Time between two rows, ms; every contour cycle without it.
     #[arg(long, value_name = "MS", requires = "record", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,
+}
+
+impl RecordingOptions {
+    /// The signals of a TNC.
+    pub fn observed(&self) -> Result<Vec<Observed>, UsageError> {
+        let all = self.signals.iter().map(|signal| signal.observed.clone());
+        all.collect::<Result<_, String>>().map_err(UsageError::new)
+    }
+
+    /// The parameters of a System 900.
+    pub fn names(&self) -> Result<Vec<Name>, UsageError> {
+        let name = |signal: &SignalName| match signal.name {
+            Some(name) => Ok(name),
+            None => Err(UsageError::new(format!(
+                "--signals {}: a System 900 has parameters, as P12151 or 2:P8685",
+                signal.text
+            ))),
+        };
+        self.signals.iter().map(name).collect()
+    }
+}
+
+/// What is recorded, as it is written: which of it there is, the family of the control says.
+#[derive(Clone, Debug)]
+pub(crate) struct SignalName {
+    text: String,
+    /// As a signal of a TNC, or why it is none.
+    pub observed: Result<Observed, String>,
+    /// As a parameter of a System 900.
+    name: Option<Name>,
+}
+
+impl FromStr for SignalName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<SignalName, String> {
+        let observed = text
+            .parse::<Observed>()
+            .map_err(|error| format!("--signals {text}: {error}"));
+        let name = text.parse::<Name>().ok();
+        match (&observed, name) {
+            (Err(_), None) => text
+                .parse::<Observed>()
+                .map(drop)
+                .map_err(|error| error.to_string())?,
+            _ => {}
+        }
+        Ok(SignalName {
+            text: text.to_owned(),
+            observed,
+            name,
+        })
+    }
 }

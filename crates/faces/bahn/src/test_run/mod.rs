@@ -35,7 +35,7 @@ type Shelf = fn(&TestOptions, Equipment) -> Result<Outcome, UsageError>;
 /// Runs a program and reports, or leaves several programs to `shelf`.
 pub(crate) fn command(mut options: TestOptions, shelf: Shelf) -> Result<Outcome, UsageError> {
     files::keep_inputs(&options.inputs(), &options.written())?;
-    let equipment = Equipment::of_any_family(options.model, &options.machine)?;
+    let equipment = Equipment::of_any_family(options.model, &options.machine, &options.run)?;
     options.model = equipment.list.model();
     settings::say_without_effect(&equipment.list, &options.machine.mp);
     match options.single() {

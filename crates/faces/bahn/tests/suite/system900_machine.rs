@@ -45,6 +45,14 @@ fn a_program_runs_in_its_channel() {
     let least_s = 60.0 * (2.0 * (edge / 2400.0 + 7.0 / 800.0) + 4.0 * 14.0 / 600.0) + 4.0 * 0.2;
     let time = report["machining_time_s"].as_f64().unwrap();
     assert!((least_s..1.5 * least_s).contains(&time), "{time} {least_s}");
+    // At half the override what is milled takes its time once more, and nothing more than twice its time.
+    let half = folder.bahn("test portal/programs/P1000.900 --machine portal --override 50 --format json");
+    let half = half.json()["machining_time_s"].as_f64().unwrap();
+    let milled_s = least_s - 4.0 * 0.2;
+    assert!(
+        (time + milled_s..2.0 * time).contains(&half),
+        "{half} {time} {milled_s}"
+    );
     let text = folder
         .bahn("test portal/programs/P1000.900 --machine portal")
         .out();
@@ -77,20 +85,29 @@ fn faults_have_their_place() {
         "{}",
         run.err()
     );
-    let run = folder.bahn("test P1000.900 --machine portal --mp 1010.0=3000");
-    assert_eq!(run.code(), 2);
-    assert!(run.err().contains("--mp is for a TNC"), "{}", run.err());
+    for option in [
+        "--mp 1010.0=3000",
+        "--set Q1=5",
+        "--start X5",
+        "--skip-blocks",
+        "--datum X1",
+    ] {
+        let run = folder.bahn(&format!("test P1000.900 --machine portal {option}"));
+        assert_eq!(run.code(), 2, "{option}");
+        let name = option.split(' ').next().unwrap();
+        assert!(
+            run.err().contains(&format!("{name} is for a TNC")),
+            "{}",
+            run.err()
+        );
+    }
 }
 
 /// All that takes the folder of a TNC says why it does not take this one.
 #[test]
 fn what_is_for_a_tnc_says_so() {
     let folder = portal();
-    for command in [
-        "run --machine portal",
-        "panel --machine portal",
-        "torture --machine portal",
-    ] {
+    for command in ["panel --machine portal", "torture --machine portal"] {
         let run = folder.bahn(command);
         assert!(run.code() == 1 || run.code() == 2, "{command}: {}", run.code());
         assert!(run.err().contains("System 900"), "{command}: {}", run.err());
@@ -100,18 +117,13 @@ fn what_is_for_a_tnc_says_so() {
 #[test]
 fn wrong_folders_have_all_their_faults() {
     let folder = portal();
-    let toml = "name = 'p'\ncontrol = 'tnc'\nparameters = 'wrong.q'\nbeam = 2\n";
+    let toml = "name = 'p'\ncontrol = 'system900'\nparameters = 'wrong.q'\nbeam = 2\n";
     folder.write("portal/machine.toml", toml);
     folder.write("portal/wrong.q", "q2: 9\n");
     let run = folder.bahn("machine check portal");
     assert_eq!(run.code(), 1);
     let err = run.err();
-    for said in [
-        "machine.toml:2:11",
-        "the only control here is",
-        "unknown key `beam`",
-        "wrong.q:1:5",
-    ] {
+    for said in ["machine.toml:4:1", "unknown key `beam`", "wrong.q:1:5"] {
         assert!(err.contains(said), "{said} is missing in\n{err}");
     }
 }

@@ -117,7 +117,7 @@ impl Bench {
         }
         let fault = fault.or_else(|| self.foreign(&program));
         let limits = match &self.system900 {
-            Some(machine) => machine.limits(&program),
+            Some(machine) => machine.limits(&program, &self.limits),
             None => self.limits.clone(),
         };
         let mut reader = self.reader(program);

@@ -12,10 +12,12 @@ mod cure;
 mod entry;
 mod field;
 mod line;
+mod search;
 mod table;
 mod value;
 mod write;
 
+pub use search::{Found, find};
 pub use table::{Definition, Kind, Owner, SynchRow};
 pub use write::template;
 

@@ -23,15 +23,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("nc", &["text", "path", "parameters", "program", "reader", "din"]),
     (
         "interpreter900",
-        &[
-            "text",
-            "path",
-            "parameters",
-            "system900",
-            "program",
-            "reader",
-            "din",
-        ],
+        &["text", "path", "system900", "program", "reader", "din"],
     ),
     ("script", &["text"]),
     ("kernel", &["path", "parameters", "reader", "motion", "servo"]),
@@ -42,6 +34,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "control900",
         &[
+            "text",
             "path",
             "parameters",
             "system900",
@@ -108,6 +101,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "servo",
             "machine",
             "tnc",
+            "kernel",
+            "control900",
         ],
     ),
     (
@@ -245,6 +240,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "plc",
             "servo",
             "machine",
+            "control900",
             "tnc",
             "host",
             "trials",

@@ -4,9 +4,8 @@ use bahn_host::{Operand, Retained};
 use bahn_plc::{TraceStep, Tracer};
 use bahn_report::plc::Subject;
 
-use super::breakpoint::Breakpoints;
 use super::entry::Entry;
-use super::trend::Trend;
+use bahn_report::plc::{Breakpoints, Trend};
 
 /// What `bahn plc watch` shows, and what was typed.
 pub(super) struct Watch {

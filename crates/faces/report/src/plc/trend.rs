@@ -13,7 +13,7 @@ const BARS: [char; 8] = [
 
 /// The contents of the last cycles.
 #[derive(Debug, Default)]
-pub(super) struct Trend {
+pub struct Trend {
     shown: bool,
     operands: Vec<(Operand, VecDeque<i32>)>,
 }
@@ -24,10 +24,12 @@ impl Trend {
         self.shown
     }
 
+    /// Bars or binary numbers.
     pub fn turn_over(&mut self) {
         self.shown = !self.shown;
     }
 
+    /// What was remembered is forgotten.
     pub fn clear(&mut self) {
         self.operands.clear();
     }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use bahn_tnc::{Control, Done, Work};
 
-use crate::reading::Reading;
+use super::reading::Reading;
 
 /// How often it is looked whether the run is to end.
 const PATIENCE: Duration = Duration::from_millis(50);

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_machine::Folder900;
+use bahn_control900::StandardAnswers;
+use bahn_machine::{Answer900, Folder900, Machine, Plant900};
 use bahn_system900::{Checked, DataFile, check};
 use bahn_text::{Diagnostic, Severity, Span, decode};
 
+use super::ideal::IdealMachine;
+use crate::any_plant::AnyPlant;
 use crate::{HostError, files};
 
 /// A machine with a System 900.
@@ -67,6 +70,45 @@ impl Machine900 {
     /// The folder of its part programs and cycles.
     pub fn programs(&self) -> PathBuf {
         self.root.join(&self.folder.programs)
+    }
+
+    /// Files that are read, beside its programs.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let plant = match &self.folder.plant {
+            Plant900::File(file) => Some(self.root.join(file)),
+            Plant900::Ideal => None,
+        };
+        let own = [Folder900::FILE, &self.folder.parameters].map(|file| self.root.join(file));
+        own.into_iter().chain(plant).collect()
+    }
+
+    /// What answers in the place of a PLC.
+    pub fn answers(&self) -> StandardAnswers {
+        let has = |answer| self.folder.answers.contains(&answer);
+        StandardAnswers {
+            enable: has(Answer900::Enable),
+            mode: has(Answer900::Mode),
+            start: has(Answer900::Start),
+            m: has(Answer900::M),
+            tools: has(Answer900::Tools),
+        }
+    }
+
+    /// The plant as its file describes it, or an ideal one; the inner `Err` holds the faults of the file.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn plant(&self) -> Result<Result<AnyPlant, Vec<Diagnostic>>, HostError> {
+        let Plant900::File(file) = &self.folder.plant else {
+            return Ok(Ok(AnyPlant::new(IdealMachine::of(self.parameters.memory()))));
+        };
+        let path = self.root.join(file);
+        let text = decode(&files::read_description(&path)?);
+        let faults = |faults: Vec<Diagnostic>| -> Vec<Diagnostic> {
+            let faults = faults.into_iter();
+            faults.map(|fault| fault.in_text(&path, &text)).collect()
+        };
+        Ok(Machine::from_toml(&text).map(AnyPlant::new).map_err(faults))
     }
 
     /// What is accepted, but looks wrong.

@@ -4,7 +4,7 @@ use bahn_host::{Content, Operand};
 
 /// The breakpoints that are set.
 #[derive(Debug, Default)]
-pub(super) struct Breakpoints {
+pub struct Breakpoints {
     /// Lines of the main file.
     lines: Vec<u32>,
     /// Operands with the contents they had last.
@@ -12,6 +12,7 @@ pub(super) struct Breakpoints {
 }
 
 impl Breakpoints {
+    /// A line has one.
     pub fn has_lines(&self) -> bool {
         !self.lines.is_empty()
     }
@@ -37,6 +38,7 @@ impl Breakpoints {
         set
     }
 
+    /// The program stops when the operand changes.
     pub fn watches(&self, operand: Operand) -> bool {
         self.operands.iter().any(|(own, _)| *own == operand)
     }

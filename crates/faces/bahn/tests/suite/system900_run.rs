@@ -1,0 +1,208 @@
+//! Programs on a machine with a System 900: both channels of the portal, scripts, recordings, what survives power-off.
+
+use serde_json::{Value, json};
+
+use crate::support::{Folder, copy};
+
+/// A folder with the shipped portal in it.
+fn portal() -> Folder {
+    let folder = Folder::new();
+    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
+    copy(&shipped, &folder.path("portal"));
+    folder
+}
+
+/// What a run with a script came to.
+fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String) {
+    folder.write("script.txt", script);
+    let run = folder.bahn(&format!(
+        "run --machine portal --fresh --script script.txt --format json {more}"
+    ));
+    let (code, errors) = (run.code(), run.err());
+    let report = serde_json::from_str(&run.out()).unwrap_or_else(|error| panic!("{error}: {errors}"));
+    (code, report, errors)
+}
+
+/// Both heads work at once. Head 1 ends above its last hole, X20 Y180 of G54, whose zero point is X250 Y120; head 2 has turned the
+/// table by four quarters, a whole turn.
+#[test]
+fn both_heads_run_their_programs() {
+    let folder = portal();
+    let run = folder.bahn("run --machine portal --fresh --read P8685,2:P8685,P8903 --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let report = run.json();
+    assert_eq!(
+        (&report["completed"], &report["model"]),
+        (&json!(true), &json!("system900"))
+    );
+    let place = |of: &Value, axis: &str| of["final_position"][axis].clone();
+    assert_eq!(
+        (place(&report, "X"), place(&report, "Y")),
+        (json!(270.0), json!(300.0)),
+        "{report}"
+    );
+    assert_eq!(report["reads"]["2:P8685"], json!(0.0));
+    let second = &report["channels"][0];
+    assert_eq!(
+        (&second["channel"], &second["completed"]),
+        (&json!(2), &json!(true))
+    );
+    assert_eq!(place(second, "C"), json!(0.0), "{second}");
+    // T1 M6 and T5 M6 of head 1, acknowledged one PLC cycle later.
+    let changes: Vec<&Value> = report["m"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|m| m["m"] == 6)
+        .collect();
+    assert_eq!(changes.len(), 2, "{report}");
+    let waited = changes[0]["ack_t"].as_f64().unwrap() - changes[0]["t"].as_f64().unwrap();
+    assert!((0.0..=0.02).contains(&waited), "{waited}");
+    assert_eq!(report["messages"], json!([]));
+    let text = folder.bahn("run --machine portal --fresh").out();
+    assert!(
+        text.contains("SYSTEM 900") && text.contains("Channel 2"),
+        "{text}"
+    );
+}
+
+/// A file runs in channel 1 alone; its path is drawn.
+#[test]
+fn a_named_program_runs_alone() {
+    let folder = portal();
+    let run = folder.bahn("run P2000.900 --machine portal --fresh --path p.csv --format json");
+    // Channel 1 has no axis C.
+    assert_eq!(run.code(), 1, "{}", run.out());
+    assert!(run.err().contains("P2000.900"), "{}", run.err());
+    let run = folder.bahn("run P1000.900 --machine portal --fresh --path p.csv --format json");
+    assert_eq!(run.code(), 0, "{}", run.err());
+    assert_eq!(run.json().get("channels"), None);
+    assert!(folder.read("p.csv").lines().count() > 20);
+}
+
+/// A drive that gives nothing any more leaves its axis behind: M2001 of logical axis 3 breaks the program off.
+#[test]
+fn a_dead_drive_is_a_lag_error() {
+    let folder = portal();
+    let (code, report, errors) = with_script(&folder, "start+3: fault drive 1 dead\n", "");
+    assert_eq!(code, 1, "{report}");
+    let said = &report["messages"][0];
+    assert_eq!(
+        (&said["number"], &said["channel"]),
+        (&json!(2001), &json!(1)),
+        "{report}"
+    );
+    assert!(errors.contains("M2001"), "{errors}");
+    // A script that expects it wants it so.
+    let script =
+        "start+3: fault drive 1 dead\nwhen message \"M2001\": repair 1\n+1: expect P8685=0\n+0: end\n";
+    let (_, report, errors) = with_script(&folder, script, "");
+    assert_eq!(report["failed_expectations"], json!([]), "{errors}");
+}
+
+/// STOP of one channel stops the network, q904; START goes on.
+#[test]
+fn stop_in_the_network() {
+    let folder = portal();
+    let script = "start+2: P8682=1\n+1: expect P8685=1, 2:P8685=1\n+0: P8682=2, 2:P8682=2\n+1: expect P8685=2, 2:P8685=2\n";
+    let (code, report, errors) = with_script(&folder, script, "");
+    assert_eq!(
+        (code, &report["failed_expectations"]),
+        (0, &json!([])),
+        "{errors}"
+    );
+    let (code, report, _) = with_script(&folder, "start+2: expect P8685=1\n", "");
+    assert_eq!(code, 1);
+    assert_eq!(report["failed_expectations"][0]["actual"], json!("P8685 is 2"));
+}
+
+/// The script is the PLC and the operator: without a start nothing runs.
+#[test]
+fn without_an_operator_the_script_does_all() {
+    let folder = portal();
+    let script = "0.5: P8683=2\n+0.5: P8682=2\n+0.5: expect P8685=2, 2:P8685=0\n+0.1: P8705=1\n+0.2: expect P8685=0\n+0: end\n";
+    let (code, report, errors) = with_script(&folder, script, "--operator absent");
+    assert_eq!(
+        (code, &report["failed_expectations"]),
+        (0, &json!([])),
+        "{errors}"
+    );
+}
+
+/// A row for every 100 ms, not rounded; the heading has name and unit.
+#[test]
+fn parameters_are_recorded() {
+    let folder = portal();
+    let run = folder.bahn(
+        "run P1000.900 --machine portal --fresh --record r.csv --signals P12151,P8685,q2150 --every 100 --format json",
+    );
+    assert_eq!(run.code(), 0, "{}", run.err());
+    let table = folder.read("r.csv");
+    let heading = table.lines().next().unwrap();
+    assert_eq!(heading, "time [s],P12151 [mm],P8685,q2150 [mm],event");
+    assert!(table.contains(",start\n"), "{table}");
+    let run = folder.bahn("run --machine portal --record r.csv --signals X.actual");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("a System 900 has parameters"), "{}", run.err());
+}
+
+/// All parameters survive power-off; --fresh begins with the data file.
+#[test]
+fn parameters_survive_power_off() {
+    let folder = portal();
+    folder.write("set.txt", "0.1: P510=2.5\n0.2: end\n");
+    let run = folder.bahn("run --machine portal --script set.txt --operator absent --format json");
+    assert_eq!(run.json()["reads"], json!({}));
+    let read = |more: &str| {
+        folder.write("end.txt", "0.1: end\n");
+        let run = folder.bahn(&format!(
+            "run --machine portal --script end.txt --operator absent --read P510 --format json {more}"
+        ));
+        run.json()["reads"]["P510"].clone()
+    };
+    assert_eq!(read(""), json!(2.5));
+    assert_eq!(read("--fresh"), Value::Null);
+    folder.write("portal/state/parameters.q", "P510: x\n");
+    let run = folder.bahn("run --machine portal");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("parameters.q") && run.err().contains("1:7"),
+        "{}",
+        run.err()
+    );
+}
+
+/// A log repeats the run: the same report.
+#[test]
+fn a_log_repeats_the_run() {
+    let folder = portal();
+    let first = folder
+        .bahn("run P1000.900 --machine portal --fresh --log run.log --format json")
+        .json();
+    let again = folder
+        .bahn("run P1000.900 --machine portal --fresh --replay run.log --format json")
+        .json();
+    assert_eq!(first["m"], again["m"]);
+    assert_eq!(first["machining_time_s"], again["machining_time_s"]);
+}
+
+/// What means something to a TNC alone is refused; so is what a script does not know.
+#[test]
+fn wrong_use_is_refused() {
+    let folder = portal();
+    for option in ["--mp 7310=0", "--image p.png", "--override 50", "--strict"] {
+        let run = folder.bahn(&format!("run --machine portal --fresh {option}"));
+        assert_eq!(run.code(), 2, "{option}");
+        assert!(run.err().contains("is for a TNC"), "{option}: {}", run.err());
+    }
+    let run = folder.bahn("run P1.900 P2.900 P3.900 --machine portal --fresh");
+    assert_eq!(run.code(), 2, "{}", run.err());
+    folder.write("s.txt", "1: P8682\n1: 2:P99999=1\n1: expect P8685\n1: jump\n");
+    let run = folder.bahn("run --machine portal --fresh --script s.txt");
+    assert_eq!(run.code(), 1);
+    for place in ["s.txt:1", "s.txt:2", "s.txt:3", "s.txt:4"] {
+        assert!(run.err().contains(place), "{place}: {}", run.err());
+    }
+    let run = folder.bahn("run --machine portal --fresh --read P99999");
+    assert_eq!(run.code(), 2, "{}", run.err());
+}
