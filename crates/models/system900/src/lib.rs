@@ -92,7 +92,7 @@ pub use messages::{
 pub use name::{Name, NoName};
 pub use networks::{Together, network, together};
 pub use outbox::{News, Receiver, Transfer};
-pub use path_data::{PathData, ToolBlock, rounded};
+pub use path_data::{PathData, ToolBlock};
 pub use programs::{NoProgramName, ProgramName, Programs};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
 pub use running::{AxisCommand, Routine, Running};

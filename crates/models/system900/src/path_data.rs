@@ -6,7 +6,6 @@ use crate::memory::{Memory, Place, SpaceError};
 use crate::name::Name;
 use crate::numbers::{AXES, AXIS, AXIS_BLOCK, FURTHER_PLANES, PLANES};
 use crate::tools::Layout as ToolLayout;
-use crate::value::{DECIMALS_MAX, Value};
 use crate::zero::Layout as ZeroLayout;
 
 /// The four records of a tool [002:1806-1997].
@@ -97,16 +96,6 @@ impl Memory {
         }
         Ok(())
     }
-}
-
-/// A value of so many decimals, rounded.
-pub fn rounded(value: f64, decimals: u8) -> Option<Value> {
-    let decimals = decimals.min(DECIMALS_MAX);
-    let digits = (value * 10f64.powi(decimals.into())).round();
-    (digits.is_finite() && digits.abs() < 9e15).then_some(Value::Decimal {
-        digits: digits as i64,
-        decimals,
-    })
 }
 
 /// One of the sums and feeds that a program asks for by its number.

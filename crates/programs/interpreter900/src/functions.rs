@@ -7,7 +7,7 @@
 
 use bahn_din::system900::{MFunction as Word, m_function};
 use bahn_path::{At, Function, Synchronisation, TechnologyFunction, ToolCall, ToolShape};
-use bahn_system900::{Acts, MFunction, Memory, ToolBlock, Value, rounded};
+use bahn_system900::{Acts, MFunction, Memory, ToolBlock, Value};
 
 use crate::modal::Modal;
 use crate::refusal::{Refusal, wrong};
@@ -29,10 +29,10 @@ pub(crate) struct Then {
     pub calls: Option<u16>,
 }
 
-/// Cycles of M functions, and what M6 calls.
+/// What M6 calls where it lies beside the program [002:1731-1735].
 const TOOL_CYCLE: u16 = 6;
 
-/// Takes M functions. `has_cycle` says whether a cycle lies beside the program, `block_of` which block has a number.
+/// Takes M functions. `has_tool_cycle` says whether Z6 lies beside the program, `block_of` which block has a number.
 pub(crate) fn take_m(
     words: &Words,
     memory: &Memory,
@@ -191,7 +191,7 @@ pub(crate) fn take_tool(
     if change != 0 {
         let [length, radius] = memory.path_data(channel).offsets();
         let call = ToolCall {
-            tool: rounded(group, 0).map_or(0, |_| group as u32),
+            tool: group as u32,
             axis: modal.plane.normal,
             speed_rpm: modal.speeds[0],
             shape: ToolShape {

@@ -191,12 +191,12 @@ impl Reader900 {
     fn failure(&self, refusal: Refusal) -> Box<ProgramError> {
         let block = self.run.at;
         let file = self.files.get(block.program.into());
-        let (message, detail, cause) = refusal.said();
+        let (message, cause) = refusal.said();
         Box::new(ProgramError {
             message,
             program: file.map_or_else(String::new, |file| file.text.name().to_owned()),
             block,
-            detail,
+            detail: String::new(),
             cause,
         })
     }

@@ -1,9 +1,8 @@
 //! Why a block is not executed.
 
-use bahn_parameters::MessageId;
 use bahn_reader::{Cause, Message};
 
-/// What to do about a text that is wrong.
+/// What to do about a block that says something wrong.
 const CORRECT: &str = "Correct the block; `bahn check` tells all that is wrong in the file.";
 
 /// Why a block cannot be executed.
@@ -18,25 +17,14 @@ pub(crate) enum Refusal {
 }
 
 impl Refusal {
-    /// What the control shows, what exactly, and what it is about.
-    pub fn said(self) -> (Message, String, Cause) {
-        match self {
-            Refusal::Wrong(detail) => (
-                Message::Control(MessageId::WrongProgramData),
-                detail,
-                Cause::Written(CORRECT),
-            ),
-            Refusal::NotYet(what) => (
-                Message::Control(MessageId::BlockNotSupported),
-                format!("{what} is not executed here"),
-                Cause::default(),
-            ),
-            Refusal::Numbered(number, text) => (
-                Message::Numbered(format!("M{number} {text}")),
-                String::new(),
-                Cause::default(),
-            ),
-        }
+    /// What is shown, and what it is about. Messages of a TNC are none of this control.
+    pub fn said(self) -> (Message, Cause) {
+        let (text, cause) = match self {
+            Refusal::Wrong(text) => (text, Cause::Written(CORRECT)),
+            Refusal::NotYet(what) => (format!("{what} is not executed here"), Cause::default()),
+            Refusal::Numbered(number, text) => (format!("M{number} {text}"), Cause::default()),
+        };
+        (Message::Numbered(text), cause)
     }
 }
 

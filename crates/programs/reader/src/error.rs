@@ -95,7 +95,8 @@ impl Cause {
 pub enum Message {
     /// One of the control's own messages, by its number.
     Control(MessageId),
-    /// The text of an FN14 number: `ERROR 12`, `PLC ERROR 05` ... [003:4364-4367].
+    /// A text that no list of messages has: that of an FN14 number, `ERROR 12`, `PLC ERROR 05` ... [003:4364-4367], or one of
+    /// another family of controls.
     Numbered(String),
 }
 

@@ -1,6 +1,7 @@
 //! M functions, speeds, tools and cycles.
 
 use bahn_path::{At, Barrier, Function, Synchronisation};
+use bahn_reader::Message;
 
 use crate::support::{ends, fault_with, functions, number, ran_with, reader_with, run};
 
@@ -85,7 +86,8 @@ fn cycles_are_called_at_the_end_of_their_block() {
     // M234 is the third function of P8308; it calls itself without end.
     let mut endless = reader_with("F100 M234\n", "P8308: $00400000\n", &cycles);
     let error = run(&mut endless).error.unwrap();
-    assert_eq!(error.detail, "more than 10 cycles within one another");
+    let deep = Message::Numbered("more than 10 cycles within one another".to_owned());
+    assert_eq!(error.message, deep);
     assert_eq!(error.program, "Z234.900");
 }
 

@@ -74,13 +74,13 @@ pub fn ran_with(text: &str, more: &str) -> Ran {
     ran
 }
 
-/// What is wrong with a program: the message with its detail.
+/// What is wrong with a program: the message.
 pub fn fault_with(text: &str, more: &str) -> String {
     let error = run(&mut reader_with(text, more, &[])).error.unwrap();
-    match error.message {
-        Message::Numbered(text) => text,
-        Message::Control(_) => error.detail,
-    }
+    let Message::Numbered(text) = error.message else {
+        panic!("a message of a TNC: {error:?}");
+    };
+    text
 }
 
 pub fn fault(text: &str) -> String {

@@ -23,15 +23,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("nc", &["text", "path", "parameters", "program", "reader", "din"]),
     (
         "interpreter900",
-        &[
-            "text",
-            "path",
-            "parameters",
-            "system900",
-            "program",
-            "reader",
-            "din",
-        ],
+        &["text", "path", "system900", "program", "reader", "din"],
     ),
     ("script", &["text"]),
     ("kernel", &["path", "parameters", "reader", "motion", "servo"]),

@@ -24,10 +24,10 @@ fn cycles_end() {
     let data = "q158: 1\nP8308: $00400000\n";
     let own = [("Z234.900", "N10 M234\n")];
     let ran = run(&mut with_cycles(data, "N10 M234\n", &own));
-    let (_, said) = ran.fault.unwrap();
+    let said = ran.fault.unwrap();
     assert_eq!(said, "more than 10 cycles within one another");
     let ran = run(&mut with_cycles(data, "N10 M234\n", &[]));
-    let (_, said) = ran.fault.unwrap();
+    let said = ran.fault.unwrap();
     assert!(said.contains("Z234.900"), "{said}");
 }
 

@@ -130,10 +130,7 @@ fn feeds_follow_their_parameters() {
         feeds("", "N10 G1 G95 F0.2 S1000 X1\nN20 M30\n"),
         [Programmed(200.0)]
     );
-    assert_eq!(
-        fault("", "N10 G1 X1\nN20 M30\n"),
-        "WRONG PROGRAM DATA no feed is programmed: F is 0"
-    );
+    assert_eq!(fault("", "N10 G1 X1\nN20 M30\n"), "no feed is programmed: F is 0");
 }
 
 /// G4 in seconds by X or F [002:4906-4920].

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bahn_interpreter900::Reader900;
 use bahn_path::{Axis, Barrier, ElementSource, LiveData, PathElement, Step};
+use bahn_reader::Message;
 use bahn_system900::DataFile;
 use bahn_text::MemoryFiles;
 
@@ -38,8 +39,8 @@ pub fn with_cycles(data: &str, program: &str, cycles: &[(&str, &str)]) -> Reader
 pub struct Ran {
     pub elements: Vec<PathElement>,
     pub barriers: Vec<Barrier>,
-    /// Message and detail of the fault that ended it.
-    pub fault: Option<(String, String)>,
+    /// The message of the fault that ended it.
+    pub fault: Option<String>,
 }
 
 impl Ran {
@@ -70,11 +71,10 @@ pub fn run(reader: &mut Reader900) -> Ran {
             Step::End => return ran,
             Step::Starved => panic!("starved"),
             Step::Error(error) => {
-                let message = error
-                    .message
-                    .text(bahn_parameters::ControlModel::Tnc415b)
-                    .to_owned();
-                ran.fault = Some((message, error.detail.clone()));
+                let Message::Numbered(text) = error.message else {
+                    panic!("a message of a TNC: {error:?}");
+                };
+                ran.fault = Some(text);
                 return ran;
             }
         }
@@ -92,6 +92,5 @@ pub fn ends(data: &str, program: &str) -> Vec<[f64; 3]> {
 /// The fault of a program, in words.
 pub fn fault(data: &str, program: &str) -> String {
     let ran = run(&mut reader(data, program));
-    let (message, detail) = ran.fault.unwrap_or_else(|| panic!("it runs"));
-    format!("{message} {detail}").trim().to_owned()
+    ran.fault.unwrap_or_else(|| panic!("it runs"))
 }

@@ -91,6 +91,6 @@ fn the_length_of_the_tool_lies_along_the_normal() {
     assert_eq!(ends(data, "N10 T2\nN20 G1 Z1 F100\nN30 M30\n"), [[0.0, 0.0, 1.0]]);
     assert_eq!(
         fault(data, "N10 T3 M16\nN20 M30\n"),
-        "WRONG PROGRAM DATA T3: no tool of the channel has this group, q175 to q178"
+        "T3: no tool of the channel has this group, q175 to q178"
     );
 }
