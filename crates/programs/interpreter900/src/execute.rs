@@ -12,6 +12,7 @@ use crate::drilling::Drill;
 use crate::functions::{self, Then};
 use crate::g_functions::{self, Once};
 use crate::motion;
+use crate::plain;
 use crate::reader::Reader900;
 use crate::refusal::{Refusal, wrong};
 use crate::run::{Ended, Extra};
@@ -35,9 +36,8 @@ impl Reader900 {
         }
         if let Some(line) = self.run.skip.take()
             && memory.path_data(self.channel).condition()
-            && let Some(frame) = self.run.frames.last_mut()
         {
-            frame.line = line;
+            self.go_to_line(line);
         }
         let Some(frame) = self.run.frames.last_mut() else {
             self.run.ended = Some(Ended::Finished);
@@ -55,33 +55,45 @@ impl Reader900 {
             return Ok(());
         }
         frame.line += 1;
-        let Some(block) = file.words.block(line) else {
+        let number = frame.block;
+        let read = file.words.block_into(line, &mut self.block);
+        frame.block = file.block_after(line, number, read.is_some());
+        let Some(read) = read else {
             return Ok(());
         };
-        frame.block = file.block_of(line, frame.block);
         self.run.at = BlockRef {
             program: u16::try_from(frame.file).unwrap_or(u16::MAX),
-            block: frame.block,
+            block: number,
         };
         self.run.count()?;
-        let block = block.map_err(|faults| {
+        read.map_err(|faults| {
             let first = faults.into_iter().next();
             Refusal::Wrong(first.map_or_else(String::new, |fault| fault.message))
         })?;
-        if block.may_be_skipped && memory.path_data(self.channel).skips() {
+        if self.block.may_be_skipped && memory.path_data(self.channel).skips() {
             return Ok(());
         }
         if self.run.is_stale {
             self.run.modal.refresh(memory, self.channel, &self.axes)?;
             self.run.is_stale = false;
         }
+        if plain::execute(&self.block, &mut self.run, &self.axes) {
+            return Ok(());
+        }
+        let block = std::mem::take(&mut self.block);
+        let done = self.execute_block(&block, line, memory);
+        self.block = block;
+        done
+    }
+
+    fn execute_block(&mut self, block: &Block, line: u32, memory: &mut Memory) -> Result<(), Refusal> {
         let jump = block.words.iter().find_map(|word| match word.kind {
             WordKind::Jump(condition) => Some(condition),
             _ => None,
         });
         match jump {
             Some(condition) => self.jump_if(condition, memory),
-            None => self.take(&block, line, memory),
+            None => self.take(block, line, memory),
         }
     }
 
@@ -100,9 +112,7 @@ impl Reader900 {
             let Some(line) = line else {
                 return wrong(format!("P8801: no block has the number N{number}"));
             };
-            if let Some(frame) = self.run.frames.last_mut() {
-                frame.line = line;
-            }
+            self.go_to_line(line);
         }
         Ok(())
     }
@@ -114,12 +124,21 @@ impl Reader900 {
     }
 
     fn go_to(&mut self, number: u32) -> Result<(), Refusal> {
-        match (self.line_of(number), self.run.frames.last_mut()) {
-            (Some(line), Some(frame)) => {
-                frame.line = line;
+        match self.line_of(number) {
+            Some(line) => {
+                self.go_to_line(line);
                 Ok(())
             }
-            _ => wrong(format!("no block has the number N{number}")),
+            None => wrong(format!("no block has the number N{number}")),
+        }
+    }
+
+    /// Goes on at a line of the file that is executed.
+    fn go_to_line(&mut self, line: u32) {
+        if let Some(frame) = self.run.frames.last_mut()
+            && let Some(file) = self.files.get(frame.file)
+        {
+            (frame.line, frame.block) = (line, file.block_of(line));
         }
     }
 
@@ -177,7 +196,7 @@ impl Reader900 {
         let file = frame.and_then(|frame| self.files.get(frame.file));
         let block_of = |number: u32| {
             let file = file?;
-            Some(file.block_from(file.words.line_of(number)?, 1))
+            Some(file.block_of(file.words.line_of(number)?))
         };
         functions::take_m(words, memory, self.channel, ordered, has_tool_cycle, block_of)
     }

@@ -7,6 +7,7 @@ use bahn_path::{Axis, PerAxis, Plane, Position};
 use bahn_system900::Memory;
 
 use crate::axes::ChannelAxes;
+use crate::feeds::Feeds;
 use crate::refusal::{Refusal, wrong};
 
 /// How F is meant.
@@ -54,6 +55,7 @@ pub(crate) struct Modal {
     pub override_off: bool,
     /// G81 to G85 that is modal.
     pub drilling: Option<u16>,
+    pub feeds: Feeds,
     /// Where the zero of the program lies in the machine without rotation.
     pub shift: PerAxis<f64>,
     /// Axes that turn their sense at the end, by P8892.
@@ -91,6 +93,7 @@ impl Modal {
             polar: [0.0; 2],
             override_off: false,
             drilling: None,
+            feeds: Feeds::default(),
             shift: PerAxis::default(),
             turned_round: PerAxis::default(),
             g92_is_turned: true,
@@ -132,6 +135,7 @@ impl Modal {
         };
         let mirrored = data.mirrored();
         let [length, _] = data.offsets();
+        self.feeds = Feeds::of(&data);
         self.g92_is_turned = !data.g92_is_not_turned();
         for axis in axes.iter() {
             let mut shift = match data.zero_shift(self.zero_point, axis.logical) {
@@ -204,6 +208,20 @@ impl Modal {
         let mirrored = if self.is_mirrored(axis) { -value } else { value };
         let moved = mirrored + self.shift[axis] + self.g92[axis];
         if self.turned_round[axis] { -moved } else { moved }
+    }
+
+    /// Where an axis comes to by its word, without rotation.
+    pub fn axis_end(&self, axis: Axis, value: f64, here: f64) -> f64 {
+        match self.is_absolute {
+            true => self.axis_to_machine(axis, value),
+            false => here + if self.is_reversed(axis) { -value } else { value },
+        }
+    }
+
+    /// Whether nothing but the shifts of its axes acts on a line that follows.
+    pub fn is_straight(&self) -> bool {
+        let is_free = !self.is_polar && self.rotation.is_none() && self.drilling.is_none();
+        is_free && !self.exact_stop && self.feed_kind == FeedKind::PerMinute
     }
 
     /// A point of the program in the machine.

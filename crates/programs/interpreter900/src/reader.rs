@@ -10,6 +10,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use bahn_din::system900::Block;
 use bahn_path::{Axis, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Warning};
@@ -32,6 +33,8 @@ pub struct Reader900 {
     pub(crate) memory: Option<Box<Memory>>,
     pub(crate) axes: ChannelAxes,
     pub(crate) files: FilesOfRun,
+    /// The block that is executed: its room is used again.
+    pub(crate) block: Block,
     pub(crate) run: Run,
     /// States before blocks whose elements were handed out, when they are kept, with the length of the journal.
     kept: Option<VecDeque<(Mark, Run, usize)>>,
@@ -54,11 +57,23 @@ impl Reader900 {
         position: Position,
         beside: Arc<dyn Files>,
     ) -> Reader900 {
+        let program = Program::from_bytes(name, bytes.to_vec());
+        Reader900::of_program(Arc::new(program), channel, position, beside)
+    }
+
+    /// The same for a program that is there already.
+    pub fn of_program(
+        program: Arc<Program>,
+        channel: u8,
+        position: Position,
+        beside: Arc<dyn Files>,
+    ) -> Reader900 {
         Reader900 {
             channel: channel.max(1),
             memory: None,
             axes: ChannelAxes::default(),
-            files: FilesOfRun::new(name, bytes, beside),
+            files: FilesOfRun::new(program, beside),
+            block: Block::default(),
             run: Run::at(position),
             kept: None,
             journal: Journal::new(),
@@ -253,10 +268,9 @@ impl Reader for Reader900 {
         let Some(frame) = self.run.frames.last() else {
             return self.run.at;
         };
-        let file = self.files.get(frame.file);
         BlockRef {
             program: u16::try_from(frame.file).unwrap_or(u16::MAX),
-            block: file.map_or(0, |file| file.block_from(frame.line, frame.block)),
+            block: frame.block,
         }
     }
 

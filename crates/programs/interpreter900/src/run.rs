@@ -29,7 +29,7 @@ pub(crate) struct Frame {
     pub file: usize,
     /// The line that is executed next, from 1.
     pub line: u32,
-    /// A block at or before it.
+    /// The block that stands there or comes next after it.
     pub block: u32,
     /// Loops of M24: the line of each, and how often it jumps still.
     pub loops: Vec<(u32, u32)>,

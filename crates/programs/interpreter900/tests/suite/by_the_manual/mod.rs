@@ -4,6 +4,7 @@ mod cycles;
 mod flow;
 mod functions;
 mod paths;
+mod plain;
 mod reader;
 mod support;
 mod zero_points;
