@@ -8,14 +8,15 @@ use bahn_path::{Barrier, BlockRef};
 use bahn_system900::{Memory, Name};
 
 use crate::axes::ChannelAxes;
+use crate::corner::Insert;
 use crate::drilling::Drill;
 use crate::functions::{self, Then};
 use crate::g_functions::{self, Once};
-use crate::motion;
+use crate::motion::{self, Movement};
 use crate::plain;
 use crate::reader::Reader900;
 use crate::refusal::{Refusal, wrong};
-use crate::run::{Ended, Extra};
+use crate::run::Extra;
 use crate::words::{Words, value_of};
 use crate::writes::{self, Ordered};
 
@@ -40,8 +41,7 @@ impl Reader900 {
             self.go_to_line(line);
         }
         let Some(frame) = self.run.frames.last_mut() else {
-            self.run.ended = Some(Ended::Finished);
-            return Ok(());
+            return self.run.finish();
         };
         let Some(file) = self.files.get(frame.file) else {
             return wrong("a cycle is gone");
@@ -49,10 +49,10 @@ impl Reader900 {
         let line = frame.line;
         if line > file.words.line_count() {
             self.run.frames.pop();
-            if self.run.frames.is_empty() {
-                self.run.ended = Some(Ended::Finished);
-            }
-            return Ok(());
+            return match self.run.frames.is_empty() {
+                true => self.run.finish(),
+                false => Ok(()),
+            };
         }
         frame.line += 1;
         let number = frame.block;
@@ -210,35 +210,35 @@ impl Reader900 {
         memory: &Memory,
     ) -> Result<bool, Refusal> {
         let dwell_s = words.time.filter(|_| once.dwells).unwrap_or(0.0);
-        let extra = Extra {
-            functions: ordered.functions,
-            dwell_s,
-            law: None,
-        };
-        let data = memory.path_data(self.channel);
         let movement = match once.shifts {
             true => None,
-            false => motion::of(
-                words,
-                &mut self.run.modal,
-                once,
-                &self.run.here,
-                &data,
-                &self.axes,
-            )?,
+            false => motion::of(words, &mut self.run.modal, once, &self.run.here)?,
         };
         let here = self.run.here;
+        let moving = |one: &Movement| one.curve.length(&here, &one.end) > 0.0 || one.end != here;
+        let mut extra = Extra {
+            functions: ordered.functions,
+            dwell_s,
+            ..Extra::default()
+        };
+        if once.corner {
+            if !movement.as_ref().is_some_and(moving) {
+                return wrong("G12 stands in a block that moves in the plane");
+            }
+            extra.insert = Some(Insert::of(&memory.path_data(self.channel))?);
+        }
         match movement {
-            Some(movement) if movement.curve.length(&here, &movement.end) > 0.0 || movement.end != here => {
-                self.run.push(movement.curve, movement.end, movement.feed, extra);
+            Some(movement) if moving(&movement) => {
+                self.run
+                    .push(movement.curve, movement.end, movement.feed, extra)?;
                 if movement.stops {
-                    self.run.hold(Extra::default());
+                    self.run.hold(Extra::default())?;
                 }
                 Ok(true)
             }
             moved => {
                 if !extra.functions.is_empty() || dwell_s > 0.0 {
-                    self.run.hold(extra);
+                    self.run.hold(extra)?;
                 }
                 Ok(moved.is_some())
             }
@@ -280,13 +280,12 @@ impl Reader900 {
         let block = self.run.at;
         if then.stops {
             self.run.stopped = Some(block);
-            self.run.barrier(Barrier::Stop { block });
+            self.run.barrier(Barrier::Stop { block })?;
         } else if waits {
-            self.run.barrier(Barrier::Acknowledge { block });
+            self.run.barrier(Barrier::Acknowledge { block })?;
         }
         if then.ends {
-            self.run.ended = Some(Ended::Finished);
-            return Ok(());
+            return self.run.finish();
         }
         if let Some(target) = then.skips_to {
             self.run.skip = self.line_of(target);

@@ -5,10 +5,8 @@
 //! Decision: G10 counts radius and angle about the zero of the program
 
 use bahn_path::{Axis, Curve, FeedRate, Position, Sense};
-use bahn_system900::PathData;
 
 use crate::arc::{self, By};
-use crate::axes::ChannelAxes;
 use crate::g_functions::Once;
 use crate::modal::{FeedKind, Modal};
 use crate::refusal::{Refusal, wrong};
@@ -77,8 +75,6 @@ pub(crate) fn of(
     modal: &mut Modal,
     once: Once,
     here: &Position,
-    data: &PathData,
-    axes: &ChannelAxes,
 ) -> Result<Option<Movement>, Refusal> {
     let has_centre = words.centre.iter().any(Option::is_some);
     let is_circle = matches!(modal.motion, 2 | 3);
@@ -102,9 +98,9 @@ pub(crate) fn of(
         true => modal.feeds.of_rapid(),
         false => FeedRate::Programmed(programmed(modal, &curve, here, &end)?),
     };
-    if let (Curve::Arc(arc), Some(deviation)) = (&curve, modal.feeds.circle_deviation) {
+    if let Curve::Arc(arc) = &curve {
         let (radius, _) = arc.radii(here, &end);
-        feed = feed.up_to(circle_limit(radius, deviation, modal, data, axes)?);
+        feed = modal.feeds.on_circle(feed, radius)?;
     }
     let exact = once.exact_stop.unwrap_or(modal.exact_stop);
     Ok(Some(Movement {
@@ -166,23 +162,4 @@ fn programmed(modal: &Modal, curve: &Curve, here: &Position, end: &Position) -> 
     let feed = if feed > 0.0 { feed } else { modal.feed };
     let acting = modal.feeds.acting(feed);
     acting.ok_or_else(|| Refusal::Wrong("no feed is programmed: F is 0".to_owned()))
-}
-
-/// v = Kv * sqrt(2 R dev) in mm/s, by the smallest Kv of the plane.
-fn circle_limit(
-    radius: f64,
-    deviation: f64,
-    modal: &Modal,
-    data: &PathData,
-    axes: &ChannelAxes,
-) -> Result<f64, Refusal> {
-    if radius <= deviation {
-        return Err(Refusal::Numbered(
-            1237,
-            "the radius of the circle is not greater than P8852",
-        ));
-    }
-    let kv = |slot: Axis| axes.of_slot(slot).map_or(16.0, |axis| data.kv(axis.logical));
-    let kv = kv(modal.plane.first).min(kv(modal.plane.second));
-    Ok(60.0 * kv * (2.0 * radius * deviation).sqrt())
 }

@@ -10,7 +10,7 @@ use crate::run::{Extra, Run};
 /// Executes a block that is a plain line; `false` leaves it, and the run as it was.
 pub(crate) fn execute(block: &Block, run: &mut Run, axes: &ChannelAxes) -> bool {
     let modal = &run.modal;
-    if !modal.is_straight() {
+    if !modal.is_straight() || !run.contour.is_idle(&modal.contour) {
         return false;
     }
     let (mut motion, mut feed, mut end) = (modal.motion, modal.feed, run.here);
@@ -35,6 +35,6 @@ pub(crate) fn execute(block: &Block, run: &mut Run, axes: &ChannelAxes) -> bool 
         return false;
     };
     (run.modal.motion, run.modal.feed) = (motion, feed);
-    run.push(Curve::Line, end, FeedRate::Programmed(acting), Extra::default());
-    true
+    run.push(Curve::Line, end, FeedRate::Programmed(acting), Extra::default())
+        .is_ok()
 }

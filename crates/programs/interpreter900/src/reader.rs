@@ -18,9 +18,11 @@ use bahn_system900::Memory;
 use bahn_text::Files;
 
 use crate::axes::ChannelAxes;
+use crate::contour::Contour;
 use crate::file::FilesOfRun;
+use crate::item::Item;
 use crate::refusal::Refusal;
-use crate::run::{Ended, Frame, Item, Run};
+use crate::run::{Ended, Frame, Run};
 use crate::writes::Journal;
 
 /// Executes a program of a channel and the cycles that it calls.
@@ -172,7 +174,7 @@ impl Reader900 {
         let written = self.journal.len();
         match (self.execute(), before) {
             (Ok(()), Some(before)) => {
-                if !self.run.queue.is_empty()
+                if (!self.run.queue.is_empty() || self.run.contour.holds())
                     && let Some(kept) = &mut self.kept
                 {
                     let mark = Mark {
@@ -204,7 +206,7 @@ impl Reader900 {
     }
 
     fn failure(&self, refusal: Refusal) -> Box<ProgramError> {
-        let block = self.run.at;
+        let block = refusal.block().unwrap_or(self.run.at);
         let file = self.files.get(block.program.into());
         let (message, cause) = refusal.said();
         Box::new(ProgramError {
@@ -289,6 +291,7 @@ impl Reader for Reader900 {
     fn goto(&mut self, block: u32) {
         self.run.frames = vec![Frame::new(0)];
         self.run.queue.clear();
+        self.run.contour = Contour::default();
         self.run.here = self.run.position;
         self.run.is_placed = true;
         self.run.is_stale = true;
@@ -347,12 +350,13 @@ impl Reader for Reader900 {
 
     fn relocate(&mut self, position: &Position) {
         self.run.queue.clear();
+        self.run.contour = Contour::default();
         self.run.waiting = None;
         (self.run.position, self.run.here) = (*position, *position);
     }
 
     fn stand_at(&mut self, position: &Position) {
-        if !self.run.queue.is_empty() {
+        if !self.run.queue.is_empty() || self.run.contour.holds() {
             return;
         }
         for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {

@@ -1,5 +1,7 @@
 //! The manual's examples, one after the other, on a channel with three axes.
 
+mod corners;
+mod correction;
 mod cycles;
 mod flow;
 mod functions;
