@@ -60,6 +60,7 @@ pub(super) fn bare(element: &PathElement, curve: Curve) -> PathElement {
         dwell_s: 0.0,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         ..element.clone()
     }
 }
