@@ -411,6 +411,7 @@ fn bare(element: &PathElement, curve: Curve) -> PathElement {
         functions: None,
         dwell_s: 0.0,
         tangential_end: false,
+        end_feed: None,
         ..element.clone()
     }
 }

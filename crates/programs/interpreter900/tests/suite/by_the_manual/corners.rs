@@ -78,3 +78,29 @@ fn p8857_limits_feeds_by_the_circles_through_the_points() {
         feeds("P8857: 0.1\n")
     );
 }
+
+/// Angles of 180, 150, 135 and 120 degrees are changes of direction of 0, 30, 45 and 60: the feed before the corner is multiplied by 1,
+/// 0.866, 0.707, 0.5 with P8851 = 1, by 1, 0.649, 0.353, 0.125 with 3 [002:4500-4530]. Below 90 degrees it is 0.
+#[test]
+fn p8851_slows_down_before_corners() {
+    let before = |p8851: &str, turn: f64| {
+        let (sin, cos) = turn.to_radians().sin_cos();
+        let end = format!("X{:.6} Y{:.6}", 50.0 + 50.0 * cos, 50.0 * sin);
+        let program = format!("N10 G1 X50 F1000\nN20 {end}\nN30 M30\n");
+        let ran = run(&mut reader(p8851, &program));
+        assert_eq!(ran.fault, None);
+        ran.elements[0].end_feed.unwrap_or(1000.0) / 1000.0
+    };
+    for (turn, one, three) in [
+        (0.0, 1.0, 1.0),
+        (30.0, 0.866, 0.649),
+        (45.0, 0.707, 0.353),
+        (60.0, 0.5, 0.125),
+        (91.0, 0.0, 0.0),
+    ] {
+        for (p8851, wanted) in [("1", one), ("3", three), ("-1", one), ("0", 1.0)] {
+            let found = before(&format!("P8851: {p8851}\n"), turn);
+            assert!((found - wanted).abs() < 1e-3, "{turn} {p8851}: {found}");
+        }
+    }
+}
