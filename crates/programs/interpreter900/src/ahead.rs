@@ -20,6 +20,8 @@ const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 const STANDARD: f64 = 1.0;
 /// Cosine of a change of direction that is rounding, no corner.
 const STRAIGHT: f64 = 1.0 - 1e-9;
+/// Cosine of a corner of 90 degrees, with its rounding.
+const SQUARE: f64 = 1e-9;
 
 /// Taken when the parameters were written.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,8 +57,9 @@ impl AheadRules {
             return;
         };
         if let Some(exponent) = self.exponent {
-            let cos = cosine(before, after).clamp(0.0, 1.0);
-            before.end_feed = (cos < STRAIGHT).then(|| feed * cos.powf(exponent));
+            let cos = cosine(before, after);
+            let factor = if cos > SQUARE { cos.powf(exponent) } else { 0.0 };
+            before.end_feed = (cos < STRAIGHT).then_some(feed * factor);
         }
         if let Some(deviation) = self.deviation
             && let Some(radius) = radius([&before.start, &before.end, &after.end])
@@ -95,7 +98,7 @@ fn radius([a, b, c]: [&Position; 3]) -> Option<f64> {
 /// Holds the last movement, and what came after it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ahead {
-    held: Option<Box<PathElement>>,
+    held: Option<PathElement>,
     after: Vec<Item>,
 }
 
@@ -115,7 +118,7 @@ impl Ahead {
                 }
                 self.flush(out);
                 match rules.act() {
-                    true => self.held = Some(Box::new(element)),
+                    true => self.held = Some(element),
                     false => out.push_back(Item::Element(element)),
                 }
             }
@@ -130,7 +133,7 @@ impl Ahead {
     }
 
     pub fn flush(&mut self, out: &mut VecDeque<Item>) {
-        out.extend(self.held.take().map(|held| Item::Element(*held)));
+        out.extend(self.held.take().map(Item::Element));
         out.extend(self.after.drain(..));
     }
 }

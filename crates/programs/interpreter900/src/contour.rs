@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 
 use bahn_path::Barrier;
+use bahn_path::parallel::Side;
 use bahn_system900::PathData;
 
 use crate::ahead::{Ahead, AheadRules};
@@ -58,6 +59,10 @@ impl Contour {
         rules: &ContourRules,
         out: &mut VecDeque<Item>,
     ) -> Result<(), Refusal> {
+        if insert.is_none() && item.side == Side::Off && self.correction.is_idle() && !self.corners.holds() {
+            self.ahead.push(Item::Element(item.element), &rules.ahead, out);
+            return Ok(());
+        }
         let correction = &mut self.correction;
         self.corners.push(item, insert, &mut |item| {
             correction.push(item, &rules.correction, &mut self.passed)

@@ -77,7 +77,7 @@ impl Reader900 {
             self.run.modal.refresh(memory, self.channel, &self.axes)?;
             self.run.is_stale = false;
         }
-        if plain::execute(&self.block, &mut self.run, &self.axes) {
+        if plain::execute(&self.block, &mut self.run, &self.axes)? {
             return Ok(());
         }
         let block = std::mem::take(&mut self.block);
