@@ -91,6 +91,8 @@ pub struct PathElement {
     /// The path continues without a corner check at the end: the joint is tangential by construction
     /// (rounding, transition arc).
     pub tangential_end: bool,
+    /// The greatest feed at the end of the element, mm/min, where the path goes on, whatever the override is.
+    pub end_feed: Option<f64>,
     /// Time the element takes in addition to its movement (dwell), s.
     pub dwell_s: f64,
     /// How its coordinates stand in the machine, when not upright: cycle 19, M114.
@@ -119,6 +121,7 @@ impl PathElement {
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             placement: None,
             functions: None,

@@ -32,6 +32,7 @@ mod cylinder;
 mod direction;
 mod element;
 mod frame;
+pub mod parallel;
 mod placement;
 mod plane;
 pub mod region;

@@ -20,9 +20,11 @@ impl LineIndex {
     pub fn up_to(text: &str, most: usize) -> LineIndex {
         let bytes = text.as_bytes();
         let mut starts = vec![0];
-        for (at, byte) in bytes.iter().enumerate() {
-            let ends = *byte == b'\n' || *byte == b'\r' && bytes.get(at + 1) != Some(&b'\n');
-            if ends && starts.len() < most {
+        for at in memchr::memchr2_iter(b'\n', b'\r', bytes) {
+            if starts.len() >= most {
+                break;
+            }
+            if bytes.get(at..at + 2) != Some(b"\r\n") {
                 starts.push(at + 1);
             }
         }

@@ -44,6 +44,7 @@ impl ElementSource for Lines {
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             placement: None,
             functions: None,

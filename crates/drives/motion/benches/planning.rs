@@ -48,6 +48,7 @@ impl<F: FnMut(usize, Position) -> (Curve, Position)> ElementSource for Synthetic
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             placement: None,
             functions: None,

@@ -81,6 +81,7 @@ pub(crate) fn connect(
         override_law: element.override_law,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         dwell_s: 0.0,
         placement: element.placement.clone(),
         functions: None,

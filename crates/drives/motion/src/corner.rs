@@ -100,11 +100,11 @@ impl Joint {
             Passing::Tangential => 1.0 - beside(last, next, only_main),
             Passing::ByAngle => cosine(last, next) - beside(last, next, only_main),
         };
-        if turn < dynamics.corner_cosine {
+        if turn < dynamics.corner_cosine || last.end_speed <= 0.0 {
             return Joint::Stop;
         }
         let axes = if only_main { &MAIN[..] } else { &Axis::ALL };
-        let speed = last.speed.min(next.speed);
+        let speed = last.speed.min(next.speed).min(last.end_speed);
         match step_limit(last.end(), next.start(), axes, dynamics) {
             None => Joint::Smooth(speed),
             Some(limit) => Joint::Corner(Corner {

@@ -222,6 +222,7 @@ mod tests {
                 override_law,
                 constant_speed: false,
                 tangential_end: false,
+                end_feed: None,
                 dwell_s: 0.0,
                 placement: None,
                 functions: None,

@@ -56,7 +56,7 @@ impl Joints {
         };
         let Some(next) = next else {
             // Without a length there is no direction: the corner is where the path goes on.
-            return caps.join(last.speed);
+            return caps.join(last.speed.min(last.end_speed));
         };
         match Joint::between(last, next, self.distance, self.passing, dynamics) {
             Joint::Stop => self.join_stop(caps),

@@ -41,7 +41,7 @@
 //! # let program = Program(Some(PathElement {
 //! #     block: BlockRef::default(), sequence: 1, curve: Curve::Line, start: Position::ZERO, end,
 //! #     feed: FeedRate::Programmed(6000.0), override_law: OverrideLaw::Free, constant_speed: false,
-//! #     tangential_end: false, dwell_s: 0.0, placement: None, functions: None,
+//! #     tangential_end: false, end_feed: None, dwell_s: 0.0, placement: None, functions: None,
 //! # }));
 //! let limits = Limits {
 //!     max_feed_mm_min: PerAxis::splat(15_000.0),

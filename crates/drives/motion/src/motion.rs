@@ -26,6 +26,8 @@ pub(crate) struct Motion {
     pub(crate) length: f64,
     /// Greatest path speed, mm/s; 0 when it cannot move.
     pub(crate) speed: f64,
+    /// Greatest path speed at the end, mm/s, beside all that the joint there says.
+    pub(crate) end_speed: f64,
     /// How fast its axes let it be.
     pub(crate) slowest: Slowest,
     /// Path speed that the radial acceleration allows, mm/s; infinite on lines.
@@ -75,6 +77,7 @@ impl Motion {
         let motion = Motion {
             length: length.min(LONGEST),
             speed: dynamics.speed(element.feed, element.override_law, slowest),
+            end_speed: end_speed(element),
             slowest,
             radial_speed: f64::INFINITY,
             acceleration: acceleration(share, dynamics).min(dynamics.spindle_acceleration(element)),
@@ -227,6 +230,7 @@ impl Motion {
         let motion = Motion {
             length: length.min(LONGEST),
             speed: speed.min(radial_speed),
+            end_speed: end_speed(element),
             slowest,
             radial_speed,
             acceleration: acceleration(share.values(), dynamics),
@@ -257,6 +261,13 @@ impl Motion {
     pub(crate) fn is_curved(&self) -> bool {
         self.end_direction.is_some()
     }
+}
+
+/// Greatest speed at the end of an element, mm/s, whatever the override is.
+fn end_speed(element: &PathElement) -> f64 {
+    element
+        .end_feed
+        .map_or(f64::INFINITY, |feed| feed.max(0.0) / 60.0)
 }
 
 /// The axes with other values in a plane.

@@ -177,6 +177,17 @@ impl PathData<'_> {
         self.positive(8852)
     }
 
+    /// The deviation that limits the feed of all movements by the circles through their points, mm, P8857.
+    pub fn outline_deviation(&self) -> Option<f64> {
+        self.positive(8857)
+    }
+
+    /// How the feed changes on convex and on concave arcs, percent, and the radius from which on it does not: P8848, P8849,
+    /// P8850.
+    pub fn feed_dynamics(&self) -> [f64; 3] {
+        [8848, 8849, 8850].map(|number| self.number(number).unwrap_or(0.0))
+    }
+
     /// Kv of a logical axis, P12020; 16 where it is cleared.
     pub fn kv(&self, logical: u8) -> f64 {
         let axis = AXIS_BLOCK * u32::from(logical.saturating_sub(1));

@@ -39,6 +39,7 @@ fn part() -> Part {
         override_law: OverrideLaw::Free,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         dwell_s: 0.0,
         placement: None,
         functions: None,

@@ -90,6 +90,7 @@ fn run(points: &[[f64; 3]], corner_radius: f64) -> f64 {
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             placement: None,
             functions: None,

@@ -160,6 +160,7 @@ fn element(curve: Curve, start: [f64; 3], end: [f64; 3]) -> PathElement {
         override_law: OverrideLaw::Free,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         dwell_s: 0.0,
         placement: None,
         functions: None,

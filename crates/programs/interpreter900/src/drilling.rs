@@ -6,6 +6,7 @@
 //! Decision: G87 goes round the parallelogram: along vector 1, along vector 2, and back. G89 without P125 takes steps that
 //! reach the end of P124, or a full circle without its last point. A pattern without drilling in force is refused
 
+use bahn_path::parallel::Side;
 use bahn_path::{At, Curve, FeedRate, Function, OverrideLaw, Sense, SpindleOrder, Synchronisation};
 use bahn_path::{TechnologyFunction, Thread};
 use bahn_system900::PathData;
@@ -66,25 +67,28 @@ pub(crate) struct Drill<'a>(pub &'a mut Run);
 
 impl Drill<'_> {
     /// Moves the third axis of the plane.
-    fn along(&mut self, to: f64, feed: Option<f64>, extra: Extra) {
+    fn along(&mut self, to: f64, feed: Option<f64>, extra: Extra) -> Result<(), Refusal> {
         let normal = self.0.modal.plane.normal;
         let mut end = self.0.here;
         end[normal] = self.0.modal.axis_to_machine(normal, to);
         if end[normal] == self.0.here[normal] && extra.functions.is_empty() && extra.dwell_s == 0.0 {
-            return;
+            return Ok(());
         }
         self.0.push(
             Curve::Line,
             end,
             feed.map_or(FeedRate::Rapid, FeedRate::Programmed),
             extra,
-        );
+        )
     }
 
     /// A hole where the axes stand.
     pub fn drill(&mut self, word: u16, data: &PathData) -> Result<(), Refusal> {
+        if self.0.modal.side != Side::Off {
+            return Err(Refusal::NotYet(format!("G{word} within G41 or G42")));
+        }
         let hole = Hole::of(word, data)?;
-        self.along(hole.plane, None, Extra::default());
+        self.along(hole.plane, None, Extra::default())?;
         let dwell = Extra {
             dwell_s: hole.dwell_s,
             ..Extra::default()
@@ -103,24 +107,24 @@ impl Drill<'_> {
                         dwell_s: if is_last { hole.dwell_s } else { 0.0 },
                         ..Extra::default()
                     };
-                    self.along(depth, Some(hole.feed), extra);
-                    self.along(hole.plane, None, Extra::default());
+                    self.along(depth, Some(hole.feed), extra)?;
+                    self.along(hole.plane, None, Extra::default())?;
                     if !is_last {
-                        self.along(depth + back, None, Extra::default());
+                        self.along(depth + back, None, Extra::default())?;
                     }
                 }
             }
             84 => self.tap(&hole)?,
             85 => {
-                self.along(hole.depth, Some(hole.feed), dwell);
-                self.along(hole.plane, Some(hole.feed), Extra::default());
+                self.along(hole.depth, Some(hole.feed), dwell)?;
+                self.along(hole.plane, Some(hole.feed), Extra::default())?;
             }
             _ => {
-                self.along(hole.depth, Some(hole.feed), dwell);
-                self.along(hole.plane, None, Extra::default());
+                self.along(hole.depth, Some(hole.feed), dwell)?;
+                self.along(hole.plane, None, Extra::default())?;
             }
         }
-        self.along(hole.retract, None, Extra::default());
+        self.along(hole.retract, None, Extra::default())?;
         Ok(())
     }
 
@@ -174,8 +178,8 @@ impl Drill<'_> {
                 (down, up)
             }
         };
-        self.along(hole.depth, feed, down);
-        self.along(hole.plane, feed, up);
+        self.along(hole.depth, feed, down)?;
+        self.along(hole.plane, feed, up)?;
         Ok(())
     }
 
@@ -187,7 +191,7 @@ impl Drill<'_> {
             let mut end = self.0.modal.to_machine(&program);
             let normal = self.0.modal.plane.normal;
             end[normal] = self.0.here[normal];
-            self.0.push(Curve::Line, end, FeedRate::Rapid, Extra::default());
+            self.0.push(Curve::Line, end, FeedRate::Rapid, Extra::default())?;
             self.drill(word, data)?;
         }
         Ok(())

@@ -8,13 +8,15 @@ use bahn_path::{Barrier, BlockRef};
 use bahn_system900::{Memory, Name};
 
 use crate::axes::ChannelAxes;
+use crate::corner::Insert;
 use crate::drilling::Drill;
 use crate::functions::{self, Then};
 use crate::g_functions::{self, Once};
-use crate::motion;
+use crate::motion::{self, Movement};
+use crate::plain;
 use crate::reader::Reader900;
 use crate::refusal::{Refusal, wrong};
-use crate::run::{Ended, Extra};
+use crate::run::Extra;
 use crate::words::{Words, value_of};
 use crate::writes::{self, Ordered};
 
@@ -35,13 +37,11 @@ impl Reader900 {
         }
         if let Some(line) = self.run.skip.take()
             && memory.path_data(self.channel).condition()
-            && let Some(frame) = self.run.frames.last_mut()
         {
-            frame.line = line;
+            self.go_to_line(line);
         }
         let Some(frame) = self.run.frames.last_mut() else {
-            self.run.ended = Some(Ended::Finished);
-            return Ok(());
+            return self.run.finish();
         };
         let Some(file) = self.files.get(frame.file) else {
             return wrong("a cycle is gone");
@@ -49,39 +49,51 @@ impl Reader900 {
         let line = frame.line;
         if line > file.words.line_count() {
             self.run.frames.pop();
-            if self.run.frames.is_empty() {
-                self.run.ended = Some(Ended::Finished);
-            }
-            return Ok(());
+            return match self.run.frames.is_empty() {
+                true => self.run.finish(),
+                false => Ok(()),
+            };
         }
         frame.line += 1;
-        let Some(block) = file.words.block(line) else {
+        let number = frame.block;
+        let read = file.words.block_into(line, &mut self.block);
+        frame.block = file.block_after(line, number, read.is_some());
+        let Some(read) = read else {
             return Ok(());
         };
-        frame.block = file.block_of(line, frame.block);
         self.run.at = BlockRef {
             program: u16::try_from(frame.file).unwrap_or(u16::MAX),
-            block: frame.block,
+            block: number,
         };
         self.run.count()?;
-        let block = block.map_err(|faults| {
+        read.map_err(|faults| {
             let first = faults.into_iter().next();
             Refusal::Wrong(first.map_or_else(String::new, |fault| fault.message))
         })?;
-        if block.may_be_skipped && memory.path_data(self.channel).skips() {
+        if self.block.may_be_skipped && memory.path_data(self.channel).skips() {
             return Ok(());
         }
         if self.run.is_stale {
             self.run.modal.refresh(memory, self.channel, &self.axes)?;
             self.run.is_stale = false;
         }
+        if plain::execute(&self.block, &mut self.run, &self.axes)? {
+            return Ok(());
+        }
+        let block = std::mem::take(&mut self.block);
+        let done = self.execute_block(&block, line, memory);
+        self.block = block;
+        done
+    }
+
+    fn execute_block(&mut self, block: &Block, line: u32, memory: &mut Memory) -> Result<(), Refusal> {
         let jump = block.words.iter().find_map(|word| match word.kind {
             WordKind::Jump(condition) => Some(condition),
             _ => None,
         });
         match jump {
             Some(condition) => self.jump_if(condition, memory),
-            None => self.take(&block, line, memory),
+            None => self.take(block, line, memory),
         }
     }
 
@@ -100,9 +112,7 @@ impl Reader900 {
             let Some(line) = line else {
                 return wrong(format!("P8801: no block has the number N{number}"));
             };
-            if let Some(frame) = self.run.frames.last_mut() {
-                frame.line = line;
-            }
+            self.go_to_line(line);
         }
         Ok(())
     }
@@ -114,12 +124,21 @@ impl Reader900 {
     }
 
     fn go_to(&mut self, number: u32) -> Result<(), Refusal> {
-        match (self.line_of(number), self.run.frames.last_mut()) {
-            (Some(line), Some(frame)) => {
-                frame.line = line;
+        match self.line_of(number) {
+            Some(line) => {
+                self.go_to_line(line);
                 Ok(())
             }
-            _ => wrong(format!("no block has the number N{number}")),
+            None => wrong(format!("no block has the number N{number}")),
+        }
+    }
+
+    /// Goes on at a line of the file that is executed.
+    fn go_to_line(&mut self, line: u32) {
+        if let Some(frame) = self.run.frames.last_mut()
+            && let Some(file) = self.files.get(frame.file)
+        {
+            (frame.line, frame.block) = (line, file.block_of(line));
         }
     }
 
@@ -177,7 +196,7 @@ impl Reader900 {
         let file = frame.and_then(|frame| self.files.get(frame.file));
         let block_of = |number: u32| {
             let file = file?;
-            Some(file.block_from(file.words.line_of(number)?, 1))
+            Some(file.block_of(file.words.line_of(number)?))
         };
         functions::take_m(words, memory, self.channel, ordered, has_tool_cycle, block_of)
     }
@@ -191,35 +210,35 @@ impl Reader900 {
         memory: &Memory,
     ) -> Result<bool, Refusal> {
         let dwell_s = words.time.filter(|_| once.dwells).unwrap_or(0.0);
-        let extra = Extra {
-            functions: ordered.functions,
-            dwell_s,
-            law: None,
-        };
-        let data = memory.path_data(self.channel);
         let movement = match once.shifts {
             true => None,
-            false => motion::of(
-                words,
-                &mut self.run.modal,
-                once,
-                &self.run.here,
-                &data,
-                &self.axes,
-            )?,
+            false => motion::of(words, &mut self.run.modal, once, &self.run.here)?,
         };
         let here = self.run.here;
+        let moving = |one: &Movement| one.curve.length(&here, &one.end) > 0.0 || one.end != here;
+        let mut extra = Extra {
+            functions: ordered.functions,
+            dwell_s,
+            ..Extra::default()
+        };
+        if once.corner {
+            if !movement.as_ref().is_some_and(moving) {
+                return wrong("G12 stands in a block that moves in the plane");
+            }
+            extra.insert = Some(Insert::of(&memory.path_data(self.channel))?);
+        }
         match movement {
-            Some(movement) if movement.curve.length(&here, &movement.end) > 0.0 || movement.end != here => {
-                self.run.push(movement.curve, movement.end, movement.feed, extra);
+            Some(movement) if moving(&movement) => {
+                self.run
+                    .push(movement.curve, movement.end, movement.feed, extra)?;
                 if movement.stops {
-                    self.run.hold(Extra::default());
+                    self.run.hold(Extra::default())?;
                 }
                 Ok(true)
             }
             moved => {
                 if !extra.functions.is_empty() || dwell_s > 0.0 {
-                    self.run.hold(extra);
+                    self.run.hold(extra)?;
                 }
                 Ok(moved.is_some())
             }
@@ -261,13 +280,12 @@ impl Reader900 {
         let block = self.run.at;
         if then.stops {
             self.run.stopped = Some(block);
-            self.run.barrier(Barrier::Stop { block });
+            self.run.barrier(Barrier::Stop { block })?;
         } else if waits {
-            self.run.barrier(Barrier::Acknowledge { block });
+            self.run.barrier(Barrier::Acknowledge { block })?;
         }
         if then.ends {
-            self.run.ended = Some(Ended::Finished);
-            return Ok(());
+            return self.run.finish();
         }
         if let Some(target) = then.skips_to {
             self.run.skip = self.line_of(target);

@@ -1,6 +1,6 @@
 //! The files of a run: the program and the cycles that it calls.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use bahn_din::system900;
 use bahn_program::Program;
@@ -13,65 +13,36 @@ pub(crate) struct File {
     pub cycle: Option<u16>,
     pub text: Arc<Program>,
     pub words: Arc<system900::Program>,
-    /// The block of each line, where the text counts every line that is not empty as one.
-    blocks: Arc<Vec<u32>>,
-}
-
-/// The blocks of lines by counting; empty where the text counts otherwise.
-fn counted(text: &Program, words: &system900::Program) -> Vec<u32> {
-    let mut blocks = vec![0];
-    let mut last = [(0, 0); 2];
-    for line in 1..=words.line_count() {
-        let before = blocks.last().copied().unwrap_or_default();
-        let is_block = !words.line(line).trim().is_empty();
-        blocks.push(before + u32::from(is_block));
-        if is_block {
-            last = [
-                (line, before + 1),
-                if before % 97 == 0 {
-                    (line, before + 1)
-                } else {
-                    last[1]
-                },
-            ];
-        }
-    }
-    let fits = last
-        .iter()
-        .all(|(line, block)| *block == 0 || text.line_of(*block) == *line);
-    if fits { blocks } else { Vec::new() }
+    /// The text counts every line that is not empty as one block: it has no form feed, which parts blocks, too.
+    is_regular: bool,
+    /// Per line, how many blocks there are up to it, for jumps: found at the first one.
+    counted: Arc<OnceLock<Vec<u32>>>,
 }
 
 impl File {
-    pub fn new(cycle: Option<u16>, name: &str, bytes: &[u8]) -> File {
-        let text = Program::from_bytes(name, bytes.to_vec());
-        let words = system900::Program::from_bytes(name, bytes);
+    pub fn new(cycle: Option<u16>, text: Arc<Program>) -> File {
+        let bytes = text.to_bytes();
         File {
             cycle,
-            blocks: Arc::new(counted(&text, &words)),
-            text: Arc::new(text),
-            words: Arc::new(words),
+            is_regular: memchr::memchr(b'\x0c', &bytes).is_none(),
+            words: Arc::new(system900::Program::from_bytes(text.name(), &bytes)),
+            text,
+            counted: Arc::default(),
         }
     }
 
-    /// The block that stands in a line or comes next after it.
-    pub fn block_from(&self, line: u32, near: u32) -> u32 {
-        self.block_of(line, near)
+    /// Whether a line is a block of the text, as the text counts them.
+    fn is_block(&self, line: u32) -> bool {
+        let is_blank = |byte: u8| byte <= b' ' || byte == 0x7F;
+        !self.words.line(line).bytes().all(is_blank)
     }
 
-    /// The block that stands in a line; each line that is not empty is one, from 1. `near` is one before it.
-    pub fn block_of(&self, line: u32, near: u32) -> u32 {
-        let before = line
-            .checked_sub(1)
-            .and_then(|before| self.blocks.get(before as usize));
-        if let (Some(block), Some(before)) = (self.blocks.get(line as usize), before) {
-            return if block == before { block + 1 } else { *block };
-        }
-        if self.text.line_of(near) == line {
-            return near;
-        }
-        if self.text.line_of(near + 1) == line {
-            return near + 1;
+    /// The block that stands in a line or comes next after it, from 1.
+    pub fn block_of(&self, line: u32) -> u32 {
+        if self.is_regular {
+            let counted = self.counted.get_or_init(|| self.counted());
+            let before = line.checked_sub(1).and_then(|at| counted.get(at as usize));
+            return before.or(counted.last()).map_or(1, |before| before + 1);
         }
         let (mut from, mut to) = (1, self.text.block_count());
         while from < to {
@@ -82,6 +53,25 @@ impl File {
             }
         }
         from
+    }
+
+    fn counted(&self) -> Vec<u32> {
+        let mut count = 0;
+        let lines = 0..=self.words.line_count();
+        lines
+            .map(|line| {
+                count += u32::from(line > 0 && self.is_block(line));
+                count
+            })
+            .collect()
+    }
+
+    /// The block that comes next after a line, whose own or next one is said, with whether it has words.
+    pub fn block_after(&self, line: u32, block: u32, has_words: bool) -> u32 {
+        match self.is_regular {
+            true => block + u32::from(has_words || self.is_block(line)),
+            false => self.block_of(line + 1),
+        }
     }
 }
 
@@ -98,9 +88,9 @@ pub(crate) struct FilesOfRun {
 const CYCLES_MAX: usize = 256;
 
 impl FilesOfRun {
-    pub fn new(name: &str, bytes: &[u8], beside: Arc<dyn Files>) -> FilesOfRun {
+    pub fn new(program: Arc<Program>, beside: Arc<dyn Files>) -> FilesOfRun {
         FilesOfRun {
-            files: vec![File::new(None, name, bytes)],
+            files: vec![File::new(None, program)],
             absent: Vec::new(),
             beside,
         }
@@ -119,7 +109,8 @@ impl FilesOfRun {
         let name = format!("Z{number}.900");
         match self.beside.read(&name).filter(|_| self.files.len() < CYCLES_MAX) {
             Some(file) => {
-                self.files.push(File::new(Some(number), &name, &file.bytes));
+                let text = Arc::new(Program::from_bytes(name, file.bytes));
+                self.files.push(File::new(Some(number), text));
                 Some(self.files.len() - 1)
             }
             None => {

@@ -1,9 +1,10 @@
 //! G functions: what stays in force, and what a block alone has.
 //!
-//! Decision: G14, G15, G40, G47, G97, G147 and G171 are the state in which programs begin, and are taken; what they end is
+//! Decision: G14, G15, G47, G97, G147 and G171 are the state in which programs begin, and are taken; what they end is
 //! refused at its block until it is executed here, and so is what the manual names without a word about it
 
 use bahn_path::PerAxis;
+use bahn_path::parallel::Side;
 use bahn_system900::Memory;
 
 use crate::axes::ChannelAxes;
@@ -20,6 +21,8 @@ pub(crate) struct Once {
     pub exact_stop: Option<bool>,
     /// G92
     pub shifts: bool,
+    /// G12
+    pub corner: bool,
     /// G69, G71 to G75
     pub cycle: Option<u16>,
     /// G81 to G85
@@ -46,7 +49,15 @@ pub(crate) fn take(
             8 => once.exact_stop = Some(true),
             9 => once.exact_stop = Some(false),
             10 | 11 => (modal.is_polar, modal.polar) = (*number == 10, [0.0; 2]),
-            14 | 15 | 40 | 47 | 97 | 147 | 171 => {}
+            12 => once.corner = true,
+            40..=42 => {
+                modal.side = match number {
+                    41 => Side::Left,
+                    42 => Side::Right,
+                    _ => Side::Off,
+                }
+            }
+            14 | 15 | 47 | 97 | 147 | 171 => {}
             17..=19 | 117..=119 => {
                 modal.plane_word = *number;
                 is_stale = true;

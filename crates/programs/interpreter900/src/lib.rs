@@ -23,16 +23,24 @@
 //! }
 //! ```
 
+mod ahead;
 mod arc;
 mod axes;
+mod contour;
+mod corner;
+mod correction;
+mod correction_rules;
 mod drilling;
 mod execute;
+mod feeds;
 mod file;
 mod functions;
 mod g_functions;
+mod item;
 mod modal;
 mod motion;
 mod numbers;
+mod plain;
 mod reader;
 mod refusal;
 mod run;

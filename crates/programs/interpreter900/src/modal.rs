@@ -3,11 +3,17 @@
 //! Decision: A point of the program is turned by G45, mirrored by G61 and G62, moved by zero point, G92, G44 and the length
 //! of the tool, in this order; P8892 mirrors what comes out. G92 is turned with it where P8859 does not say otherwise
 
+use bahn_path::parallel::Side;
 use bahn_path::{Axis, PerAxis, Plane, Position};
 use bahn_system900::Memory;
 
 use crate::axes::ChannelAxes;
+use crate::contour::ContourRules;
+use crate::feeds::Feeds;
 use crate::refusal::{Refusal, wrong};
+
+/// Kv of an axis that the channel does not have, 1/s: that of P12020 where it is cleared.
+const KV: f64 = 16.0;
 
 /// How F is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +60,12 @@ pub(crate) struct Modal {
     pub override_off: bool,
     /// G81 to G85 that is modal.
     pub drilling: Option<u16>,
+    pub feeds: Feeds,
+    /// G41, G42, as they are programmed.
+    pub side: Side,
+    /// With its correction, mm.
+    pub tool_radius: f64,
+    pub contour: ContourRules,
     /// Where the zero of the program lies in the machine without rotation.
     pub shift: PerAxis<f64>,
     /// Axes that turn their sense at the end, by P8892.
@@ -91,6 +103,10 @@ impl Modal {
             polar: [0.0; 2],
             override_off: false,
             drilling: None,
+            feeds: Feeds::default(),
+            side: Side::Off,
+            tool_radius: 0.0,
+            contour: ContourRules::default(),
             shift: PerAxis::default(),
             turned_round: PerAxis::default(),
             g92_is_turned: true,
@@ -131,7 +147,12 @@ impl Modal {
             normal,
         };
         let mirrored = data.mirrored();
-        let [length, _] = data.offsets();
+        let [length, radius] = data.offsets();
+        let kv = |slot: Axis| axes.of_slot(slot).map_or(KV, |axis| data.kv(axis.logical));
+        let kv = kv(first).min(kv(second));
+        self.tool_radius = radius;
+        self.feeds = Feeds::of(&data, kv);
+        self.contour = ContourRules::of(&data, kv);
         self.g92_is_turned = !data.g92_is_not_turned();
         for axis in axes.iter() {
             let mut shift = match data.zero_shift(self.zero_point, axis.logical) {
@@ -174,6 +195,14 @@ impl Modal {
         one ^ two ^ self.turned_round[first] ^ self.turned_round[second]
     }
 
+    /// The side of the tool on the path in the machine.
+    pub fn side_of_path(&self) -> Side {
+        match self.is_turned_over() {
+            true => self.side.mirrored(),
+            false => self.side,
+        }
+    }
+
     /// A vector of the plane in the machine.
     pub fn vector(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let [x, y] = match self.rotation {
@@ -204,6 +233,20 @@ impl Modal {
         let mirrored = if self.is_mirrored(axis) { -value } else { value };
         let moved = mirrored + self.shift[axis] + self.g92[axis];
         if self.turned_round[axis] { -moved } else { moved }
+    }
+
+    /// Where an axis comes to by its word, without rotation.
+    pub fn axis_end(&self, axis: Axis, value: f64, here: f64) -> f64 {
+        match self.is_absolute {
+            true => self.axis_to_machine(axis, value),
+            false => here + if self.is_reversed(axis) { -value } else { value },
+        }
+    }
+
+    /// Whether nothing but the shifts of its axes acts on a line that follows.
+    pub fn is_straight(&self) -> bool {
+        let is_free = !self.is_polar && self.rotation.is_none() && self.drilling.is_none();
+        is_free && self.side == Side::Off && !self.exact_stop && self.feed_kind == FeedKind::PerMinute
     }
 
     /// A point of the program in the machine.

@@ -1,17 +1,12 @@
 //! Movements of a block.
 //!
-//! Decision: G93 F is the time of a block in seconds, as that of G4 is. P8818 counts for G1, G2 and G3, P8815 takes the
-//! place of all of it. Without P8816 G0 is as fast as the axes allow
-//!
 //! Decision: An exact stop is an element in which nothing moves. G0 ends with it where P8858 is not 2
 //!
 //! Decision: G10 counts radius and angle about the zero of the program
 
 use bahn_path::{Axis, Curve, FeedRate, Position, Sense};
-use bahn_system900::PathData;
 
 use crate::arc::{self, By};
-use crate::axes::ChannelAxes;
 use crate::g_functions::Once;
 use crate::modal::{FeedKind, Modal};
 use crate::refusal::{Refusal, wrong};
@@ -32,10 +27,7 @@ fn end(words: &Words, modal: &mut Modal, here: &Position) -> Position {
         let mut end = *here;
         for axis in Axis::ALL {
             if let Some(value) = words.axes[axis] {
-                end[axis] = match modal.is_absolute {
-                    true => modal.axis_to_machine(axis, value),
-                    false => here[axis] + if modal.is_reversed(axis) { -value } else { value },
-                };
+                end[axis] = modal.axis_end(axis, value, here[axis]);
             }
         }
         return end;
@@ -83,8 +75,6 @@ pub(crate) fn of(
     modal: &mut Modal,
     once: Once,
     here: &Position,
-    data: &PathData,
-    axes: &ChannelAxes,
 ) -> Result<Option<Movement>, Refusal> {
     let has_centre = words.centre.iter().any(Option::is_some);
     let is_circle = matches!(modal.motion, 2 | 3);
@@ -101,33 +91,27 @@ pub(crate) fn of(
     let end = end(words, modal, here);
     let curve = match is_circle {
         false => Curve::Line,
-        true => circle(words, modal, here, &end, data)?,
+        true => circle(words, modal, here, &end)?,
     };
     let is_rapid = modal.motion == 0;
     let mut feed = match is_rapid {
-        true => data.rapid_feed().map_or(FeedRate::Rapid, FeedRate::Programmed),
-        false => FeedRate::Programmed(programmed(modal, &curve, here, &end, data)?),
+        true => modal.feeds.of_rapid(),
+        false => FeedRate::Programmed(programmed(modal, &curve, here, &end)?),
     };
-    if let (Curve::Arc(arc), Some(deviation)) = (&curve, data.circle_deviation()) {
+    if let Curve::Arc(arc) = &curve {
         let (radius, _) = arc.radii(here, &end);
-        feed = feed.up_to(circle_limit(radius, deviation, modal, data, axes)?);
+        feed = modal.feeds.on_circle(feed, radius)?;
     }
     let exact = once.exact_stop.unwrap_or(modal.exact_stop);
     Ok(Some(Movement {
         curve,
         end,
         feed,
-        stops: exact || is_rapid && data.end_of_rapid() != 2,
+        stops: exact || is_rapid && !modal.feeds.rapid_goes_on,
     }))
 }
 
-fn circle(
-    words: &Words,
-    modal: &Modal,
-    here: &Position,
-    end: &Position,
-    data: &PathData,
-) -> Result<Curve, Refusal> {
+fn circle(words: &Words, modal: &Modal, here: &Position, end: &Position) -> Result<Curve, Refusal> {
     // I, J; K, I; J, K by the plane [002:897-934].
     let (first, second) = match modal.plane_word {
         18 | 118 => (2, 0),
@@ -154,28 +138,19 @@ fn circle(
         true => Sense::Clockwise,
         false => Sense::CounterClockwise,
     };
-    arc::circle(modal.plane, [here, end], by, sense, data.radius_error_max())
+    arc::circle(modal.plane, [here, end], by, sense, modal.feeds.radius_error_max)
 }
 
 /// The feed of G1, G2, G3, mm/min.
-fn programmed(
-    modal: &Modal,
-    curve: &Curve,
-    here: &Position,
-    end: &Position,
-    data: &PathData,
-) -> Result<f64, Refusal> {
-    if let Some(test) = data.test_feed() {
+fn programmed(modal: &Modal, curve: &Curve, here: &Position, end: &Position) -> Result<f64, Refusal> {
+    if let Some(test) = modal.feeds.test() {
         return Ok(test);
     }
-    if modal.feed <= 0.0 {
-        return wrong("no feed is programmed: F is 0");
-    }
     let feed = match modal.feed_kind {
-        FeedKind::PerMinute => modal.feed,
-        FeedKind::Time => curve.length(here, end) / modal.feed * 60.0,
+        FeedKind::Time if modal.feed > 0.0 => curve.length(here, end) / modal.feed * 60.0,
+        FeedKind::PerMinute | FeedKind::Time => modal.feed,
         FeedKind::PerTurn => {
-            let spindle = usize::from(data.feed_spindle() - 1);
+            let spindle = usize::from(modal.feeds.spindle.max(1) - 1);
             let rpm = modal.speeds.get(spindle).copied().unwrap_or(0.0);
             if rpm <= 0.0 {
                 return wrong("a feed per revolution needs the speed of its spindle");
@@ -183,27 +158,8 @@ fn programmed(
             modal.feed * rpm
         }
     };
-    let percent = data.feed_percent().filter(|percent| *percent > 0.0);
-    let feed = feed * percent.unwrap_or(100.0) / 100.0;
     // A path without length takes no time.
-    Ok(if feed > 0.0 { feed } else { modal.feed })
-}
-
-/// v = Kv * sqrt(2 R dev) in mm/s, by the smallest Kv of the plane.
-fn circle_limit(
-    radius: f64,
-    deviation: f64,
-    modal: &Modal,
-    data: &PathData,
-    axes: &ChannelAxes,
-) -> Result<f64, Refusal> {
-    if radius <= deviation {
-        return Err(Refusal::Numbered(
-            1237,
-            "the radius of the circle is not greater than P8852",
-        ));
-    }
-    let kv = |slot: Axis| axes.of_slot(slot).map_or(16.0, |axis| data.kv(axis.logical));
-    let kv = kv(modal.plane.first).min(kv(modal.plane.second));
-    Ok(60.0 * kv * (2.0 * radius * deviation).sqrt())
+    let feed = if feed > 0.0 { feed } else { modal.feed };
+    let acting = modal.feeds.acting(feed);
+    acting.ok_or_else(|| Refusal::Wrong("no feed is programmed: F is 0".to_owned()))
 }

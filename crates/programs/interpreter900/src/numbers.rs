@@ -10,9 +10,7 @@ impl Reader900 {
         let Some(file) = self.files.get(block.program.into()) else {
             return block.block;
         };
-        let line = file.text.line_of(block.block);
-        let mut numbers = file.words.numbers().iter();
-        let found = numbers.find(|(_, of)| *of == line);
-        found.map_or(block.block, |(number, _)| *number)
+        let own = file.words.number_in(file.text.line_of(block.block));
+        own.unwrap_or(block.block)
     }
 }

@@ -10,6 +10,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use bahn_din::system900::Block;
 use bahn_path::{Axis, BlockRef, ElementSource, LiveData, Position, Step};
 use bahn_program::Program;
 use bahn_reader::{MachineRules, Mark, ProgramError, Reader, Warning};
@@ -17,9 +18,11 @@ use bahn_system900::Memory;
 use bahn_text::Files;
 
 use crate::axes::ChannelAxes;
+use crate::contour::Contour;
 use crate::file::FilesOfRun;
+use crate::item::Item;
 use crate::refusal::Refusal;
-use crate::run::{Ended, Frame, Item, Run};
+use crate::run::{Ended, Frame, Run};
 use crate::writes::Journal;
 
 /// Executes a program of a channel and the cycles that it calls.
@@ -32,6 +35,8 @@ pub struct Reader900 {
     pub(crate) memory: Option<Box<Memory>>,
     pub(crate) axes: ChannelAxes,
     pub(crate) files: FilesOfRun,
+    /// The block that is executed: its room is used again.
+    pub(crate) block: Block,
     pub(crate) run: Run,
     /// States before blocks whose elements were handed out, when they are kept, with the length of the journal.
     kept: Option<VecDeque<(Mark, Run, usize)>>,
@@ -54,11 +59,23 @@ impl Reader900 {
         position: Position,
         beside: Arc<dyn Files>,
     ) -> Reader900 {
+        let program = Program::from_bytes(name, bytes.to_vec());
+        Reader900::of_program(Arc::new(program), channel, position, beside)
+    }
+
+    /// The same for a program that is there already.
+    pub fn of_program(
+        program: Arc<Program>,
+        channel: u8,
+        position: Position,
+        beside: Arc<dyn Files>,
+    ) -> Reader900 {
         Reader900 {
             channel: channel.max(1),
             memory: None,
             axes: ChannelAxes::default(),
-            files: FilesOfRun::new(name, bytes, beside),
+            files: FilesOfRun::new(program, beside),
+            block: Block::default(),
             run: Run::at(position),
             kept: None,
             journal: Journal::new(),
@@ -157,7 +174,7 @@ impl Reader900 {
         let written = self.journal.len();
         match (self.execute(), before) {
             (Ok(()), Some(before)) => {
-                if !self.run.queue.is_empty()
+                if (!self.run.queue.is_empty() || self.run.contour.holds())
                     && let Some(kept) = &mut self.kept
                 {
                     let mark = Mark {
@@ -189,7 +206,7 @@ impl Reader900 {
     }
 
     fn failure(&self, refusal: Refusal) -> Box<ProgramError> {
-        let block = self.run.at;
+        let block = refusal.block().unwrap_or(self.run.at);
         let file = self.files.get(block.program.into());
         let (message, cause) = refusal.said();
         Box::new(ProgramError {
@@ -253,10 +270,9 @@ impl Reader for Reader900 {
         let Some(frame) = self.run.frames.last() else {
             return self.run.at;
         };
-        let file = self.files.get(frame.file);
         BlockRef {
             program: u16::try_from(frame.file).unwrap_or(u16::MAX),
-            block: file.map_or(0, |file| file.block_from(frame.line, frame.block)),
+            block: frame.block,
         }
     }
 
@@ -275,6 +291,7 @@ impl Reader for Reader900 {
     fn goto(&mut self, block: u32) {
         self.run.frames = vec![Frame::new(0)];
         self.run.queue.clear();
+        self.run.contour = Contour::default();
         self.run.here = self.run.position;
         self.run.is_placed = true;
         self.run.is_stale = true;
@@ -333,12 +350,13 @@ impl Reader for Reader900 {
 
     fn relocate(&mut self, position: &Position) {
         self.run.queue.clear();
+        self.run.contour = Contour::default();
         self.run.waiting = None;
         (self.run.position, self.run.here) = (*position, *position);
     }
 
     fn stand_at(&mut self, position: &Position) {
-        if !self.run.queue.is_empty() {
+        if !self.run.queue.is_empty() || self.run.contour.holds() {
             return;
         }
         for axis in Axis::ALL.into_iter().filter(|axis| !position[*axis].is_nan()) {

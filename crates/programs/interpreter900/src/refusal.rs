@@ -1,5 +1,6 @@
 //! Why a block is not executed.
 
+use bahn_path::BlockRef;
 use bahn_reader::{Cause, Message};
 
 /// What to do about a block that says something wrong.
@@ -14,12 +15,31 @@ pub(crate) enum Refusal {
     NotYet(String),
     /// A message that the manual numbers: its number and what it says.
     Numbered(u16, &'static str),
+    /// What an earlier block has done wrong, as a later one shows.
+    Earlier(BlockRef, Box<Refusal>),
 }
 
 impl Refusal {
+    /// The same about an earlier block.
+    pub fn of(self, block: BlockRef) -> Refusal {
+        match self {
+            Refusal::Earlier(..) => self,
+            other => Refusal::Earlier(block, Box::new(other)),
+        }
+    }
+
+    /// The block that it is about, where that is another than the one that is executed.
+    pub fn block(&self) -> Option<BlockRef> {
+        match self {
+            Refusal::Earlier(block, _) => Some(*block),
+            _ => None,
+        }
+    }
+
     /// What is shown, and what it is about. Messages of a TNC are none of this control.
     pub fn said(self) -> (Message, Cause) {
         let (text, cause) = match self {
+            Refusal::Earlier(_, refusal) => return refusal.said(),
             Refusal::Wrong(text) => (text, Cause::Written(CORRECT)),
             Refusal::NotYet(what) => (format!("{what} is not executed here"), Cause::default()),
             Refusal::Numbered(number, text) => (format!("M{number} {text}"), Cause::default()),

@@ -2,18 +2,16 @@
 
 use std::collections::VecDeque;
 
+use bahn_path::parallel::Side;
 use bahn_path::{Barrier, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Position, TechnologyFunction};
 use bahn_reader::ProgramError;
 
+use crate::contour::Contour;
+use crate::corner::Insert;
+use crate::correction::Move;
+use crate::item::Item;
 use crate::modal::Modal;
 use crate::refusal::{Refusal, wrong};
-
-/// What is handed out.
-#[derive(Clone, Debug)]
-pub(crate) enum Item {
-    Element(PathElement),
-    Barrier(Barrier),
-}
 
 /// Why there is nothing to go on with.
 #[derive(Clone, Debug)]
@@ -29,7 +27,7 @@ pub(crate) struct Frame {
     pub file: usize,
     /// The line that is executed next, from 1.
     pub line: u32,
-    /// A block at or before it.
+    /// The block that stands there or comes next after it.
     pub block: u32,
     /// Loops of M24: the line of each, and how often it jumps still.
     pub loops: Vec<(u32, u32)>,
@@ -48,6 +46,8 @@ pub(crate) struct Run {
     /// End of the last element that was made.
     pub here: Position,
     pub modal: Modal,
+    /// What waits for what comes after it.
+    pub contour: Contour,
     pub queue: VecDeque<Item>,
     pub waiting: Option<Barrier>,
     /// M22: the line to jump to where the PLC says so, once the barrier is left.
@@ -79,6 +79,7 @@ impl Run {
             position,
             here: position,
             modal: Modal::new(),
+            contour: Contour::default(),
             queue: VecDeque::new(),
             waiting: None,
             skip: None,
@@ -111,7 +112,7 @@ impl Run {
     }
 
     /// A movement from where the path has come to.
-    pub fn push(&mut self, curve: Curve, end: Position, feed: FeedRate, extra: Extra) {
+    pub fn push(&mut self, curve: Curve, end: Position, feed: FeedRate, extra: Extra) -> Result<(), Refusal> {
         let mut element = PathElement::new(self.at, self.sequence, curve, [self.here, end], feed);
         if self.modal.override_off {
             element.override_law = OverrideLaw::Disabled;
@@ -125,17 +126,38 @@ impl Run {
             self.idle = 0;
         }
         self.here = end;
-        self.queue.push_back(Item::Element(element));
+        let modal = &self.modal;
+        let side = modal.side_of_path();
+        if side == Side::Off && extra.insert.is_none() && self.contour.is_idle(&modal.contour) {
+            self.queue.push_back(Item::Element(element));
+            return Ok(());
+        }
+        let item = Move {
+            element,
+            plane: modal.plane,
+            side,
+            radius: modal.tool_radius,
+        };
+        self.contour
+            .push(item, extra.insert, &modal.contour, &mut self.queue)
     }
 
     /// Nothing moves: a dwell, functions, or a stop of the path.
-    pub fn hold(&mut self, extra: Extra) {
-        self.push(Curve::Hold, self.here, FeedRate::Rapid, extra);
+    pub fn hold(&mut self, extra: Extra) -> Result<(), Refusal> {
+        self.push(Curve::Hold, self.here, FeedRate::Rapid, extra)
     }
 
-    pub fn barrier(&mut self, barrier: Barrier) {
+    pub fn barrier(&mut self, barrier: Barrier) -> Result<(), Refusal> {
         self.idle = 0;
-        self.queue.push_back(Item::Barrier(barrier));
+        self.contour
+            .barrier(barrier, &self.modal.contour, &mut self.queue)
+    }
+
+    /// The program ends.
+    pub fn finish(&mut self) -> Result<(), Refusal> {
+        self.contour.flush(&self.modal.contour, &mut self.queue)?;
+        self.ended = Some(Ended::Finished);
+        Ok(())
     }
 }
 
@@ -145,6 +167,8 @@ pub(crate) struct Extra {
     pub functions: Vec<TechnologyFunction>,
     pub dwell_s: f64,
     pub law: Option<OverrideLaw>,
+    /// G12: what is put into the corner after it.
+    pub insert: Option<Insert>,
 }
 
 impl Frame {

@@ -194,6 +194,7 @@ impl Path {
             override_law: OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             placement: None,
             functions: None,

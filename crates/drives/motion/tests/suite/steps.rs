@@ -329,3 +329,19 @@ fn a_rotary_axis_beside_the_path_stops_at_a_straight_joint() {
     close(exit(0.3, 0.3, 5.0, tangential), 50.0);
     assert!(exit(2.0, 0.0, 10.0, |element| element.constant_speed = true) > 0.0);
 }
+
+/// An element says how fast its end may be passed: a straight joint at a third of the feed of 50 mm/s, at 0 with a stop.
+#[test]
+fn an_element_limits_the_feed_at_its_end() {
+    let exit = |end_feed: Option<f64>| {
+        let mut path = Path::new(3000.0);
+        path.line(&[(X, 50.0)]);
+        path.last().end_feed = end_feed;
+        path.line(&[(X, 100.0)]);
+        plan(&path.elements, &limits())[0].profile.exit_mm_s
+    };
+    close(exit(None), 50.0);
+    close(exit(Some(1000.0)), 1000.0 / 60.0);
+    close(exit(Some(6000.0)), 50.0);
+    assert_eq!(exit(Some(0.0)), 0.0);
+}

@@ -163,7 +163,7 @@ impl Bench {
     /// What reads the program, by its language.
     fn reader(&self, program: Arc<Program>) -> Box<dyn Reader> {
         if let Some(machine) = self.system900.as_ref().filter(|_| System900::runs(&program)) {
-            return Box::new(machine.reader(&program));
+            return Box::new(machine.reader(program));
         }
         let settings = &self.settings;
         let AbsentAxes { missing, plc, slaves } = settings.absent;

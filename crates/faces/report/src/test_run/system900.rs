@@ -55,11 +55,10 @@ impl System900 {
     }
 
     /// What reads a program.
-    pub fn reader(&self, program: &Program) -> Reader900 {
+    pub fn reader(&self, program: Arc<Program>) -> Reader900 {
         let beside = Arc::new(NcFolder::of(program.name().as_ref()));
-        let channel = self.channel(program);
-        let bytes = program.to_bytes();
-        let mut reader = Reader900::new(program.name(), &bytes, channel, Position::ZERO, beside);
+        let channel = self.channel(&program);
+        let mut reader = Reader900::of_program(program, channel, Position::ZERO, beside);
         reader.give_memory(self.memory.clone());
         reader
     }

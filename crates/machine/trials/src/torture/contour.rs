@@ -184,6 +184,7 @@ mod tests {
             override_law: bahn_path::OverrideLaw::Free,
             constant_speed: false,
             tangential_end: false,
+            end_feed: None,
             dwell_s: 0.0,
             functions: None,
             placement: None,

@@ -24,7 +24,7 @@ fn every_line_is_a_row() {
 fn effects_are_founded() {
     for row in rows() {
         let acts = matches!(row.effect, Effect::Acts | Effect::Partly);
-        assert_eq!(row.proof.starts_with("system900::"), acts, "{}", row.number);
+        assert_eq!(!row.proof.is_empty(), acts, "{}", row.number);
         assert_eq!(
             row.reason.is_empty(),
             row.effect == Effect::Acts,

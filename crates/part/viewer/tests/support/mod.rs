@@ -24,6 +24,7 @@ pub fn element(from: [f64; 3], to: [f64; 3]) -> PathElement {
         override_law: OverrideLaw::Free,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         dwell_s: 0.0,
         placement: None,
         functions: None,

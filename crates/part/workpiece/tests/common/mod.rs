@@ -67,6 +67,7 @@ pub fn element(curve: Curve, start: Position, end: Position) -> PathElement {
         override_law: OverrideLaw::Free,
         constant_speed: false,
         tangential_end: false,
+        end_feed: None,
         dwell_s: 0.0,
         placement: None,
         functions: None,

@@ -31,6 +31,12 @@ pub struct Block {
 }
 
 impl Block {
+    /// Makes it empty; its room stays.
+    pub(super) fn clear(&mut self) {
+        (self.may_be_skipped, self.number) = (false, None);
+        self.words.clear();
+    }
+
     /// The parameters that it writes, before all else.
     pub fn writes(&self) -> impl Iterator<Item = (Parameter, Option<Value>)> {
         self.words.iter().filter_map(|word| match word.kind {

@@ -4,7 +4,7 @@
 //! jump whose number nobody has is a fault of its block. M24 jumps back, or to its own block
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use bahn_text::{Diagnostic, Severity, Span};
 
@@ -21,10 +21,34 @@ use crate::source::{MAX_LINES, Source};
 #[derive(Clone, Debug)]
 pub struct Program {
     source: Source,
-    /// Numbers with their lines, in the order of the file.
-    numbers: Vec<(u32, u32)>,
+    /// Found when somebody asks: most programs jump nowhere.
+    numbers: OnceLock<Numbers>,
+}
+
+/// The numbers of the blocks.
+#[derive(Clone, Debug)]
+struct Numbers {
+    /// With their lines, in the order of the file.
+    all: Vec<(u32, u32)>,
     /// Whether the numbers ascend, so that they can be searched.
     is_ascending: bool,
+}
+
+impl Numbers {
+    fn of(source: &Source) -> Numbers {
+        let mut all: Vec<(u32, u32)> = Vec::new();
+        for line in 1..=source.line_count() {
+            let text = source.line(line);
+            let own =
+                plain::number(text).or_else(|| name_of(text).and_then(|name| name.get(1..)?.parse().ok()));
+            all.extend(own.map(|number| (number, line)));
+        }
+        let is_ascending = all.windows(2).all(|pair| match pair {
+            [(before, _), (after, _)] => before < after,
+            _ => true,
+        });
+        Numbers { all, is_ascending }
+    }
 }
 
 /// What is wrong with a file, and what looks so.
@@ -39,23 +63,14 @@ pub struct Findings {
 impl Program {
     /// Reads a file; whatever is wrong with it is told by [`Program::findings`].
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Program {
-        let source = Source::from_bytes(name, bytes);
-        let mut numbers: Vec<(u32, u32)> = Vec::new();
-        for line in 1..=source.line_count() {
-            let text = source.line(line);
-            let own =
-                plain::number(text).or_else(|| name_of(text).and_then(|name| name.get(1..)?.parse().ok()));
-            numbers.extend(own.map(|number| (number, line)));
-        }
-        let is_ascending = numbers.windows(2).all(|pair| match pair {
-            [(before, _), (after, _)] => before < after,
-            _ => true,
-        });
         Program {
-            source,
-            numbers,
-            is_ascending,
+            source: Source::from_bytes(name, bytes),
+            numbers: OnceLock::new(),
         }
+    }
+
+    fn found(&self) -> &Numbers {
+        self.numbers.get_or_init(|| Numbers::of(&self.source))
     }
 
     /// Name of the file.
@@ -96,16 +111,24 @@ impl Program {
 
     /// The line, from 1, of the block with a number.
     pub fn line_of(&self, number: u32) -> Option<u32> {
-        let place = match self.is_ascending {
-            true => self.numbers.binary_search_by_key(&number, |(own, _)| *own).ok(),
-            false => self.numbers.iter().position(|(own, _)| *own == number),
+        let Numbers { all, is_ascending } = self.found();
+        let place = match is_ascending {
+            true => all.binary_search_by_key(&number, |(own, _)| *own).ok(),
+            false => all.iter().position(|(own, _)| *own == number),
         };
-        self.numbers.get(place?).map(|(_, line)| *line)
+        all.get(place?).map(|(_, line)| *line)
+    }
+
+    /// The number of the block in a line, where it has one.
+    pub fn number_in(&self, line: u32) -> Option<u32> {
+        let all = &self.found().all;
+        let place = all.binary_search_by_key(&line, |(_, own)| *own).ok();
+        all.get(place?).map(|(number, _)| *number)
     }
 
     /// The numbers of its blocks with their lines, in the order of the file.
     pub fn numbers(&self) -> &[(u32, u32)] {
-        &self.numbers
+        &self.found().all
     }
 
     /// The block of a line, from 1; `None` of a line that orders nothing.
@@ -113,18 +136,25 @@ impl Program {
     /// # Errors
     /// What is wrong with it, where no run may execute it.
     pub fn block(&self, line: u32) -> Option<Result<Block, Vec<Fault>>> {
-        if let Some(block) = plain::block(line, self.line(line)) {
-            return Some(Ok(block));
+        let mut block = Block::default();
+        Some(self.block_into(line, &mut block)?.map(|()| block))
+    }
+
+    /// The same into a block whose room is used again.
+    ///
+    /// # Errors
+    /// What is wrong with it, where no run may execute it.
+    pub fn block_into(&self, line: u32, block: &mut Block) -> Option<Result<(), Vec<Fault>>> {
+        if plain::read(line, self.line(line), block).is_some() {
+            return Some(Ok(()));
         }
         let reading = self.read(line)?;
-        Some(match reading.faults.is_empty() {
-            true => Ok(reading.block),
-            false => Err(reading
-                .faults
-                .into_iter()
-                .map(|fault| self.fault(line, fault))
-                .collect()),
-        })
+        if !reading.faults.is_empty() {
+            let faults = reading.faults.into_iter();
+            return Some(Err(faults.map(|fault| self.fault(line, fault)).collect()));
+        }
+        *block = reading.block;
+        Some(Ok(()))
     }
 
     /// The words of a line that could be read, whatever is wrong with others.
@@ -199,7 +229,7 @@ impl Program {
     fn order(&self) -> Vec<Fault> {
         let mut wrong = Vec::new();
         let mut greatest: Option<u32> = None;
-        for (number, line) in &self.numbers {
+        for (number, line) in self.numbers() {
             match greatest {
                 Some(before) if *number <= before => {
                     let message = match *number == before {

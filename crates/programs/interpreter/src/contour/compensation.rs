@@ -3,10 +3,11 @@
 //! Decision: RND after the first RL/RR block is an arc tangent at the compensated contour point
 
 use bahn_parameters::MessageId;
+use bahn_path::parallel::flat::{self, Flat, SAME_POINT_MM};
+use bahn_path::parallel::{Ending, what_is_left};
 use bahn_path::{Arc, Curve, FeedRate, PathElement, Plane, Point2, Sense};
 
-use super::corner::{Ending, bare, corner, transition};
-use super::flat::{self, Flat, SAME_POINT_MM};
+use super::corner::{bare, corner, transition};
 use super::{ContourMove, FeedLaw, Side, Smooth};
 use crate::error::{Cause, Fault};
 use crate::output::Output;
@@ -296,26 +297,18 @@ impl CompensationStage {
         Ending { end, end_cut }: Ending,
         out: &mut Output,
     ) -> Result<(), Fault> {
-        let length = offset.length();
-        let left_over = length - start_cut - end_cut;
-        // The element would be run backwards: the tool damages the contour next to it [003:3469-3474].
-        const BACKWARDS_MM: f64 = 1e-6;
-        if left_over < -BACKWARDS_MM {
-            return Err(Fault::new(
+        let programmed = item.element.curve;
+        // Run backwards the tool damages the contour next to it [003:3469-3474].
+        item.element.curve = what_is_left(programmed, offset, start_cut, end_cut).ok_or_else(|| {
+            Fault::new(
                 MessageId::ToolRadiusTooLarge,
                 "the contour element is too short for the tool",
             )
-            .at(item.element.block));
-        }
-        if let Curve::Arc(arc) = &mut item.element.curve {
+            .at(item.element.block)
+        })?;
+        if let Curve::Arc(arc) = programmed {
             let contour_radius = flat::distance(item.plane.point(&item.element.start), arc.centre);
             let path_radius = flat::distance(offset.start(), arc.centre);
-            if length > SAME_POINT_MM {
-                arc.sweep_deg *= (left_over / length).max(0.0);
-            } else {
-                // An inside arc of exactly the tool radius: the tool centre stands still.
-                item.element.curve = Curve::Line;
-            }
             apply_feed_law(&mut item.element, item.feed_law, contour_radius, path_radius);
         }
         item.plane.set(&mut item.element.start, start);

@@ -7,7 +7,6 @@
 pub(crate) mod compensation;
 mod corner;
 mod corner_arc;
-pub(crate) mod flat;
 mod movement;
 pub(crate) mod rounding;
 

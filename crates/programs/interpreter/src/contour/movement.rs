@@ -1,6 +1,8 @@
 //! What passes the contour stages: a movement, with what is to become of its end.
 
-use bahn_path::{Barrier, PathElement, Plane, Sense};
+use bahn_path::parallel::Round;
+pub(crate) use bahn_path::parallel::Side;
+use bahn_path::{Barrier, PathElement, Plane};
 
 use super::corner_arc::CornerArcs;
 
@@ -29,40 +31,6 @@ pub(crate) struct ContourMove {
     pub corner_arcs: Option<CornerArcs>,
 }
 
-/// Side of the tool, seen in the direction of travel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Side {
-    #[default]
-    Off,
-    Left,
-    Right,
-}
-
-impl Side {
-    /// +1 left, -1 right, 0 off.
-    pub fn sign(self) -> f64 {
-        match self {
-            Side::Off => 0.0,
-            Side::Left => 1.0,
-            Side::Right => -1.0,
-        }
-    }
-
-    /// The sense of an arc about a point on this side.
-    pub fn sense(self) -> Sense {
-        Sense::of_sweep(self.sign())
-    }
-
-    /// The side in a mirrored system.
-    pub fn mirrored(self) -> Side {
-        match self {
-            Side::Off => Side::Off,
-            Side::Left => Side::Right,
-            Side::Right => Side::Left,
-        }
-    }
-}
-
 /// How the compensated path goes round the corner at the end of an element.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Corner {
@@ -73,6 +41,17 @@ pub(crate) enum Corner {
     Intersection,
     /// M98: both elements completely machined [003:3497-3512].
     Open,
+}
+
+impl Corner {
+    /// As the geometry says it.
+    pub fn round(self) -> Round {
+        match self {
+            Corner::Normal => Round::Arc,
+            Corner::Intersection => Round::Meet,
+            Corner::Open => Round::Open,
+        }
+    }
 }
 
 /// What the programmed feed refers to on arcs [000:5120-5126].

@@ -4,13 +4,11 @@
 //! plane, at the depth at which it ends; one of the tool axis alone has none (also `interpreter/tests/suite/readings.rs`)
 
 use bahn_parameters::MessageId;
-use bahn_path::{
-    Arc, Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position, Sense,
-};
+use bahn_path::parallel::{self, Flat};
+use bahn_path::{Axis, BlockRef, CornerArc, Curve, FeedRate, PathElement, Plane, Point2, Position};
 
 use super::compensation::CompensationStage;
 use super::corner_arc::{self, Lies};
-use super::flat::{self, Flat, SAME_POINT_MM};
 use super::{ContourMove, Side, Smooth};
 use crate::error::Fault;
 use crate::output::Output;
@@ -274,43 +272,16 @@ fn round(
     ) else {
         return Err(Fault::from(MessageId::RoundingOffNotDefined).at(join.block));
     };
-    let (ta, tb) = (a.end_tangent(), b.start_tangent());
-    let turn = flat::cross(ta, tb);
-    const TANGENTIAL: f64 = 1e-6;
-    if turn.abs() < TANGENTIAL && flat::dot(ta, tb) > 0.0 {
+    let rounded = parallel::rounding(held.plane, [a, b], radius);
+    let rounded = rounded.map_err(|_| Fault::from(MessageId::RoundingRadiusTooLarge).at(join.block))?;
+    let Some(rounded) = rounded else {
         return Ok(None);
-    }
-    let too_large = || Fault::from(MessageId::RoundingRadiusTooLarge).at(join.block);
-    let side = if turn > 0.0 { 1.0 } else { -1.0 };
-    let (oa, ob) = match (a.offset(side * radius), b.offset(side * radius)) {
-        (Some(oa), Some(ob)) => (oa, ob),
-        _ => return Err(too_large()),
     };
-    // The centre is the intersection of the parallels; with arcs take the one nearest to the corner
-    // whose tangent points lie on both elements.
-    let corner = a.end();
-    let fits = |centre: &Point2| {
-        let (back, forward) = (oa.before_end(*centre), ob.beyond_start(*centre));
-        let slack = SAME_POINT_MM;
-        back >= -slack && forward >= -slack && back <= oa.length() + slack && forward <= ob.length() + slack
-    };
-    let centre = oa
-        .intersections(&ob)
-        .into_iter()
-        .flatten()
-        .filter(fits)
-        .min_by(|p, q| flat::distance(*p, corner).total_cmp(&flat::distance(*q, corner)))
-        .ok_or_else(too_large)?;
-    let from = nearest_on(&a, centre);
-    let to = nearest_on(&b, centre);
-    let sweep = bahn_path::sweep_deg(centre, from, to, Sense::of_sweep(side));
-    let mut joint = joint_element(held, join, from, to);
-    joint.element.curve = Curve::Arc(Arc {
-        plane: held.plane,
-        centre,
-        sweep_deg: sweep,
-    });
-    cut(held, item, &a, &b, from, to);
+    let ends = [rounded.from, rounded.to];
+    let mut joint = joint_element(held, join, ends);
+    joint.element.curve = Curve::Arc(rounded.arc);
+    let plane = held.plane;
+    parallel::cut(plane, [&mut held.element, &mut item.element], [a, b], ends);
     joint.element.tangential_end = true;
     held.element.tangential_end = true;
     Ok(Some(joint))
@@ -377,38 +348,21 @@ fn chamfer(
     ) else {
         return Err(Fault::from(MessageId::ChamferNotPermitted).at(join.block));
     };
-    if length > a.length() + SAME_POINT_MM || length > b.length() + SAME_POINT_MM {
-        return Err(Fault::new(
+    let ends = parallel::chamfer([a, b], length).map_err(|_| {
+        Fault::new(
             MessageId::ChamferNotPermitted,
             "the chamfer is longer than a side",
         )
-        .at(join.block));
-    }
-    let from = flat::along(a.end(), a.end_tangent(), -length);
-    let to = flat::along(b.start(), b.start_tangent(), length);
-    let joint = joint_element(held, join, from, to);
-    cut(held, item, &a, &b, from, to);
+        .at(join.block)
+    })?;
+    let joint = joint_element(held, join, ends);
+    let plane = held.plane;
+    parallel::cut(plane, [&mut held.element, &mut item.element], [a, b], ends);
     Ok(joint)
 }
 
-fn nearest_on(curve: &Flat, centre: Point2) -> Point2 {
-    match *curve {
-        Flat::Line { start, end } => {
-            let u = flat::unit(flat::sub(end, start));
-            flat::along(start, u, flat::dot(flat::sub(centre, start), u))
-        }
-        Flat::Arc {
-            start, centre: own, ..
-        } => flat::along(
-            own,
-            flat::unit(flat::sub(centre, own)),
-            flat::distance(start, own),
-        ),
-    }
-}
-
 /// A joint in the plane of the element before it.
-fn joint_element(held: &ContourMove, join: Join, from: Point2, to: Point2) -> ContourMove {
+fn joint_element(held: &ContourMove, join: Join, [from, to]: [Point2; 2]) -> ContourMove {
     let (mut start, mut end) = (held.element.end, held.element.end);
     held.plane.set(&mut start, from);
     held.plane.set(&mut end, to);
@@ -435,18 +389,4 @@ fn joint_between(held: &ContourMove, join: Join, start: Position, end: Position)
         joint.element.feed = FeedRate::Programmed(feed);
     }
     joint
-}
-
-/// Shortens both elements to the joint.
-fn cut(held: &mut ContourMove, item: &mut ContourMove, a: &Flat, b: &Flat, from: Point2, to: Point2) {
-    shorten(&mut held.element.curve, a.before_end(from) / a.length());
-    held.plane.set(&mut held.element.end, from);
-    shorten(&mut item.element.curve, b.beyond_start(to) / b.length());
-    item.plane.set(&mut item.element.start, to);
-}
-
-fn shorten(curve: &mut Curve, fraction: f64) {
-    if let Curve::Arc(arc) = curve {
-        arc.sweep_deg *= 1.0 - fraction;
-    }
 }

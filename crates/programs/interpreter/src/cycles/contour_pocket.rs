@@ -4,6 +4,7 @@ use bahn_parameters::MessageId;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use bahn_path::parallel::Flat;
 use bahn_path::region::{
     Contour as PlaneContour, Effort, HatchPattern, Merge, Outline, Pass, PocketArea, Segment, SubContour,
     Superposition,
@@ -11,7 +12,6 @@ use bahn_path::region::{
 use bahn_path::{Arc, Axis, AxisSet, Curve, Cylinder, FeedRate, Plane, Point2, Sense};
 
 use super::machining::{Heights, Machining, Tracer, infeeds, plane_direction};
-use crate::contour::flat::Flat;
 use crate::contour::{ContourMove, Side};
 use crate::definition::Definition;
 use crate::error::Fault;

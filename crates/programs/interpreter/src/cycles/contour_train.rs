@@ -8,11 +8,11 @@ use super::contour_data::Values;
 use super::contour_pocket::{ContourJob, Halt, Milling, Watch};
 use super::machining::{Machining, infeeds};
 use crate::context::Context;
-use crate::contour::flat::Flat;
 use crate::contour::{Contour, ContourMove, Corner, FeedLaw, Side};
 use crate::error::Fault;
 use crate::output::{Item, Output};
 use crate::status::Spindle;
+use bahn_path::parallel::Flat;
 
 /// Runs cycle 25.
 pub(super) fn contour_train(c: &mut Context<'_>, job: &ContourJob, watch: &Watch<'_>) -> Result<(), Halt> {

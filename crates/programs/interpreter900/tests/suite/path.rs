@@ -134,7 +134,7 @@ fn polar_words_are_radius_and_angle() {
 #[test]
 fn what_is_not_executed_is_named() {
     for (text, said) in [
-        ("G42 X1\n", "G42 is not executed here"),
+        ("G50 X1\n", "G50 is not executed here"),
         ("G66\n", "G66 is not executed here"),
         ("B5\n", "B is no axis of channel 1, q110 to q141"),
         ("M77\n", "M77 is defined nowhere: P11069"),

@@ -1,18 +1,26 @@
 //! Lines and arcs of a contour seen in its plane: tangents, offsets, intersections.
 
-use bahn_path::{Curve, PathElement, Plane, Point2};
+use crate::{Curve, PathElement, Plane, Point2};
 
 /// The plane part of a contour element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Flat {
+pub enum Flat {
+    /// A straight line with a length.
     Line {
+        /// Start point, mm.
         start: Point2,
+        /// End point, mm.
         end: Point2,
     },
+    /// A circular arc.
     Arc {
+        /// Start point, mm.
         start: Point2,
+        /// End point, mm.
         end: Point2,
+        /// Centre, mm.
         centre: Point2,
+        /// Signed sweep, degrees; positive is counter-clockwise.
         sweep_deg: f64,
     },
 }
@@ -35,12 +43,14 @@ impl Flat {
         }
     }
 
+    /// Start point, mm.
     pub fn start(&self) -> Point2 {
         match *self {
             Flat::Line { start, .. } | Flat::Arc { start, .. } => start,
         }
     }
 
+    /// End point, mm.
     pub fn end(&self) -> Point2 {
         match *self {
             Flat::Line { end, .. } | Flat::Arc { end, .. } => end,
@@ -69,6 +79,7 @@ impl Flat {
         }
     }
 
+    /// Length, mm.
     pub fn length(&self) -> f64 {
         match *self {
             Flat::Line { start, end } => distance(start, end),
@@ -149,6 +160,17 @@ impl Flat {
         }
     }
 
+    /// The point of its carrier that is nearest to another point: where an arc about that one touches it.
+    pub fn nearest(&self, to: Point2) -> Point2 {
+        match *self {
+            Flat::Line { start, end } => {
+                let u = unit(sub(end, start));
+                along(start, u, dot(sub(to, start), u))
+            }
+            Flat::Arc { start, centre, .. } => along(centre, unit(sub(to, centre)), distance(start, centre)),
+        }
+    }
+
     /// Intersections of the carriers: the whole straight lines and circles.
     pub fn intersections(&self, other: &Flat) -> Intersections {
         match (*self, *other) {
@@ -174,10 +196,10 @@ impl Flat {
 }
 
 /// Up to two points.
-pub(crate) type Intersections = [Option<Point2>; 2];
+pub type Intersections = [Option<Point2>; 2];
 
 /// Points nearer together than this count as one, mm: a thousandth of the finest input step.
-pub(crate) const SAME_POINT_MM: f64 = 1e-7;
+pub const SAME_POINT_MM: f64 = 1e-7;
 
 fn line_line(a: Point2, b: Point2, c: Point2, d: Point2) -> Intersections {
     let (u, v) = (unit(sub(b, a)), unit(sub(d, c)));
@@ -217,42 +239,48 @@ fn circle_circle(c1: Point2, r1: f64, c2: Point2, r2: f64) -> Intersections {
 
 // Small vectors of the plane.
 
-pub(crate) fn add(a: Point2, b: Point2) -> Point2 {
+/// The sum of two vectors.
+pub fn add(a: Point2, b: Point2) -> Point2 {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-pub(crate) fn sub(a: Point2, b: Point2) -> Point2 {
+/// `a` less `b`.
+pub fn sub(a: Point2, b: Point2) -> Point2 {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-pub(crate) fn scale(a: Point2, factor: f64) -> Point2 {
+/// The vector so many times as long.
+pub fn scale(a: Point2, factor: f64) -> Point2 {
     [a[0] * factor, a[1] * factor]
 }
 
 /// `a` moved by `length` along the direction `u`.
-pub(crate) fn along(a: Point2, u: Point2, length: f64) -> Point2 {
+pub fn along(a: Point2, u: Point2, length: f64) -> Point2 {
     [a[0] + u[0] * length, a[1] + u[1] * length]
 }
 
-pub(crate) fn dot(a: Point2, b: Point2) -> f64 {
+/// The scalar product.
+pub fn dot(a: Point2, b: Point2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-pub(crate) fn cross(a: Point2, b: Point2) -> f64 {
+/// Positive when `b` points to the left of `a`.
+pub fn cross(a: Point2, b: Point2) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
 /// The vector turned 90 degrees counter-clockwise.
-pub(crate) fn left(a: Point2) -> Point2 {
+pub fn left(a: Point2) -> Point2 {
     [-a[1], a[0]]
 }
 
-pub(crate) fn distance(a: Point2, b: Point2) -> f64 {
+/// How far two points are apart.
+pub fn distance(a: Point2, b: Point2) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The vector at length 1; zero stays zero.
-pub(crate) fn unit(a: Point2) -> Point2 {
+pub fn unit(a: Point2) -> Point2 {
     let length = a[0].hypot(a[1]);
     if length > 0.0 {
         [a[0] / length, a[1] / length]
@@ -262,6 +290,6 @@ pub(crate) fn unit(a: Point2) -> Point2 {
 }
 
 /// Angle from `a` to `b`, radians in -pi..pi, counter-clockwise positive.
-pub(crate) fn angle_between(a: Point2, b: Point2) -> f64 {
+pub fn angle_between(a: Point2, b: Point2) -> f64 {
     cross(a, b).atan2(dot(a, b))
 }
