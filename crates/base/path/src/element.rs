@@ -315,6 +315,13 @@ pub enum Function {
         /// What it gets; `None` clears it.
         value: Option<f64>,
     },
+    /// The sum of the shifts of a logical axis of a System 900, which its display leaves out from here on [002:8346-8348].
+    Shift {
+        /// The axis, from 1.
+        logical: u8,
+        /// How far, mm or degrees.
+        by: f64,
+    },
     /// An M function of a System 900 whose acknowledgement ends the movement of its block and jumps [002:5484-5491].
     Branch {
         /// Its number.

@@ -122,7 +122,8 @@ impl Stopwatch {
             | Function::Superimpose(_)
             | Function::Plc(_)
             | Function::Blank(_)
-            | Function::Write { .. } => 0.0,
+            | Function::Write { .. }
+            | Function::Shift { .. } => 0.0,
         }
     }
 

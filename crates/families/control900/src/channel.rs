@@ -9,7 +9,7 @@ use bahn_motion::{FunctionOutput, Limits, Place};
 use bahn_path::{Axis, BlockRef, Function, LiveData, Position, Voltage};
 use bahn_reader::Reader;
 use bahn_servo::Timing;
-use bahn_system900::{Acts, ChannelParameter, MTable, Memory};
+use bahn_system900::{Acts, AxisParameter, ChannelParameter, MTable, Memory};
 
 use crate::kinematics::OfAxes;
 use crate::transfer::{Transfer, Transfers, When};
@@ -278,6 +278,11 @@ impl Outputs for Site<'_> {
             Function::Write { q, value } => {
                 self.memory.store_exact(bahn_system900::Place::Q(*q), *value);
                 self.written.push(*q);
+            }
+            Function::Shift { logical, by } => {
+                let place = Memory::own_place(self.number, *logical, AxisParameter::DisplayShift);
+                let decimals = self.memory.position_decimals(self.number);
+                self.memory.store(place, Some(*by), decimals);
             }
             Function::SpindleSpeed(rpm) => self.memory.program_speed(self.number, *rpm),
             _ => {}

@@ -219,6 +219,7 @@ impl Machine {
         let Some(program) = channel.starting() else {
             return;
         };
+        self.memory.forget_shifts(channel.number);
         let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
         feeder.set_tap(self.keeps_path);
         channel.feeder = Some(feeder);

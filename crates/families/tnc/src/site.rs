@@ -89,6 +89,7 @@ impl<'a> Site<'a> {
             | Function::Voltage(_)
             | Function::Blank(_)
             | Function::Write { .. }
+            | Function::Shift { .. }
             | Function::Branch { .. } => {}
         }
         true

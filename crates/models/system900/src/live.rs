@@ -197,6 +197,17 @@ impl Memory {
         self.store(place, number, decimals);
     }
 
+    /// The displays of a channel leave no shifts out: P12157 of its axes is cleared.
+    pub fn forget_shifts(&mut self, channel: u8) {
+        for logical in 1..=AXES {
+            self.store(
+                Memory::own_place(channel, logical, AxisParameter::DisplayShift),
+                None,
+                0,
+            );
+        }
+    }
+
     /// Stores bits as they are.
     pub fn store_bits(&mut self, place: Place, bits: i32) {
         let status = self.at(place).status.with_decimals(0).loaded(true);

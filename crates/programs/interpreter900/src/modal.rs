@@ -68,6 +68,8 @@ pub(crate) struct Modal {
     pub contour: ContourRules,
     /// Where the zero of the program lies in the machine without rotation.
     pub shift: PerAxis<f64>,
+    /// The logical axis of each, from 1; 0 where there is none.
+    pub logical: PerAxis<u8>,
     /// Axes that turn their sense at the end, by P8892.
     pub turned_round: PerAxis<bool>,
     pub g92_is_turned: bool,
@@ -108,6 +110,7 @@ impl Modal {
             tool_radius: 0.0,
             contour: ContourRules::default(),
             shift: PerAxis::default(),
+            logical: PerAxis::default(),
             turned_round: PerAxis::default(),
             g92_is_turned: true,
         }
@@ -172,6 +175,7 @@ impl Modal {
                 shift += length;
             }
             self.shift[axis.slot] = shift;
+            self.logical[axis.slot] = axis.logical;
             self.turned_round[axis.slot] = mirrored >> (axis.logical - 1).min(31) & 1 != 0;
         }
         Ok(())
@@ -226,6 +230,11 @@ impl Modal {
     fn is_mirrored(&self, axis: Axis) -> bool {
         let [one, two] = self.mirrored;
         one && axis == self.plane.first || two && axis == self.plane.second
+    }
+
+    /// What the display of an axis leaves out: its shifts with that of G92.
+    pub fn display_shift(&self, axis: Axis) -> f64 {
+        self.shift[axis] + self.g92[axis]
     }
 
     /// A coordinate of the program in the machine, without rotation.

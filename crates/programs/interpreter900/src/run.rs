@@ -3,7 +3,10 @@
 use std::collections::VecDeque;
 
 use bahn_path::parallel::Side;
-use bahn_path::{Barrier, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Position, TechnologyFunction};
+use bahn_path::{
+    At, Axis, Barrier, BlockRef, Curve, FeedRate, Function, OverrideLaw, PathElement, PerAxis, Position,
+    Synchronisation, TechnologyFunction,
+};
 use bahn_reader::ProgramError;
 
 use crate::contour::Contour;
@@ -57,6 +60,8 @@ pub(crate) struct Run {
     pub ended: Option<Ended>,
     /// Blocks since something moved.
     pub idle: u32,
+    /// The shifts that the display leaves out.
+    pub shown: PerAxis<f64>,
     /// Values are to be taken from the memory anew.
     pub is_stale: bool,
     /// The first block was looked for.
@@ -86,6 +91,7 @@ impl Run {
             stopped: None,
             ended: None,
             idle: 0,
+            shown: PerAxis::default(),
             is_stale: true,
             has_begun: false,
             is_placed: false,
@@ -120,7 +126,11 @@ impl Run {
         if let Some(law) = extra.law {
             element.override_law = law;
         }
-        element.functions = (!extra.functions.is_empty()).then(|| extra.functions.into_boxed_slice());
+        let mut functions = extra.functions;
+        if !matches!(curve, Curve::Hold) {
+            self.show_shifts(&mut functions);
+        }
+        element.functions = (!functions.is_empty()).then(|| functions.into_boxed_slice());
         element.dwell_s = extra.dwell_s;
         if !matches!(curve, Curve::Hold) || extra.dwell_s > 0.0 {
             self.idle = 0;
@@ -140,6 +150,23 @@ impl Run {
         };
         self.contour
             .push(item, extra.insert, &modal.contour, &mut self.queue)
+    }
+
+    /// The display of an axis follows its shifts with the first movement under them.
+    fn show_shifts(&mut self, functions: &mut Vec<TechnologyFunction>) {
+        let mut first = 0;
+        for axis in Axis::ALL {
+            let (by, logical) = (self.modal.display_shift(axis), self.modal.logical[axis]);
+            if by != self.shown[axis] && logical > 0 {
+                self.shown[axis] = by;
+                let shift = Function::Shift { logical, by };
+                functions.insert(
+                    first,
+                    TechnologyFunction::new(shift, At::Start, Synchronisation::Mos),
+                );
+                first += 1;
+            }
+        }
     }
 
     /// Nothing moves: a dwell, functions, or a stop of the path.

@@ -23,12 +23,12 @@ fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String
     (code, report, errors)
 }
 
-/// Both heads work at once. Head 1 ends above its last hole, X20 Y180 of G54, whose zero point is X250 Y120; head 2 has turned the
-/// table by four quarters, a whole turn.
+/// Both heads work at once. Head 1 ends above its last hole at X20 Y180 of G54, on Z100 with tool 5; head 2 has turned the table by
+/// four quarters, a whole turn.
 #[test]
 fn both_heads_run_their_programs() {
     let folder = portal();
-    let run = folder.bahn("run --machine portal --fresh --read P8685,2:P8685,P8903 --format json");
+    let run = folder.bahn("run --machine portal --fresh --read P8685,2:P8685,P12151,P12157 --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     let report = run.json();
     assert_eq!(
@@ -38,10 +38,16 @@ fn both_heads_run_their_programs() {
     let place = |of: &Value, axis: &str| of["final_position"][axis].clone();
     assert_eq!(
         (place(&report, "X"), place(&report, "Y")),
-        (json!(270.0), json!(300.0)),
+        (json!(20.0), json!(180.0)),
         "{report}"
     );
     assert_eq!(report["reads"]["2:P8685"], json!(0.0));
+    assert_eq!(place(&report, "Z"), json!(100.0));
+    // The zero point of G54 is X250 Y120 of the machine.
+    assert_eq!(
+        (&report["reads"]["P12151"], &report["reads"]["P12157"]),
+        (&json!(270.0), &json!(250.0))
+    );
     let second = &report["channels"][0];
     assert_eq!(
         (&second["channel"], &second["completed"]),

@@ -1,6 +1,6 @@
 //! Axes and what they say of themselves [002:8321-8547].
 
-use bahn_path::Axis;
+use bahn_path::{At, Axis, Function, Synchronisation};
 
 use crate::support::Rig;
 use crate::support::list::Line;
@@ -9,8 +9,11 @@ use crate::support::list::Line;
 #[test]
 fn the_display_is_the_nominal_position_less_the_shift() {
     let mut rig = Rig::on("");
-    rig.operator("P12157", "15");
-    rig.start(1, &[Line::to(&[(Axis::X, 40.0)], 3000.0)]);
+    // What an earlier program has left is forgotten.
+    rig.operator("P12157", "3");
+    let shift = Function::Shift { logical: 1, by: 15.0 };
+    let line = Line::to(&[(Axis::X, 40.0)], 3000.0);
+    rig.start(1, &[line.says(shift, At::Start, Synchronisation::Mos)]);
     rig.until(|rig| rig.exact("P12151") > 10.0);
     // Where the block leads, as it is displayed, and what is left.
     assert_eq!(rig.read("P12155"), 25.0);

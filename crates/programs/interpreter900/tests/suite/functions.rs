@@ -62,7 +62,17 @@ fn t_with_m6_loads_its_records() {
         Function::Write { q, value: Some(2.0) }
     };
     assert!(all.contains(&written(8048)) && all.contains(&written(8200)));
-    assert_eq!(all.last(), Some(&Function::M(6)));
+    // The display follows the length with the movement after the change.
+    let last = all.iter().rposition(|one| *one == Function::M(6));
+    assert_eq!(
+        all.get(last.unwrap() + 1..),
+        Some(
+            &[Function::Shift {
+                logical: 3,
+                by: 100.5
+            }][..]
+        )
+    );
     let sixteen = functions(&ran_with("T2 M16\n", ""));
     assert!(!sixteen.contains(&written(8200)));
     assert_eq!(

@@ -1,5 +1,6 @@
 //! Zero points, shifts, rotation, mirrors, tool length.
 
+use bahn_path::Function;
 use bahn_system900::Name;
 
 use super::support::{ends, fault, reader, run};
@@ -92,5 +93,31 @@ fn the_length_of_the_tool_lies_along_the_normal() {
     assert_eq!(
         fault(data, "N10 T3 M16\nN20 M30\n"),
         "T3: no tool of the channel has this group, q175 to q178"
+    );
+}
+
+/// P12157 is what the display of an axis leaves out: zero point, G92 and tool length [002:8346-8348]. It follows with the first
+/// movement under it.
+#[test]
+fn the_display_leaves_the_shifts_out() {
+    let data = format!("{POINTS}P20003: 100\nP20004: 50\n");
+    let shifts = |program: &str| -> Vec<(u8, f64)> {
+        let ran = run(&mut reader(&data, program));
+        let all = ran.elements.iter().flat_map(|element| element.functions());
+        let shifts = all.filter_map(|function| match function.function {
+            Function::Shift { logical, by } => Some((logical, by)),
+            _ => None,
+        });
+        shifts.collect()
+    };
+    assert_eq!(
+        shifts("N10 G54\nN20 G0 X5\nN30 X6\nN40 M30\n"),
+        [(1, 100.0), (2, 50.0)]
+    );
+    assert_eq!(shifts("N10 G0 X5\nN20 M30\n"), []);
+    // 100 and the 20 of G92; G53 takes the zero point back, and nothing else.
+    assert_eq!(
+        shifts("N10 G54 G92 X20\nN20 G0 X5\nN30 G53 X5\nN40 M30\n"),
+        [(1, 120.0), (2, 50.0), (1, 20.0), (2, 0.0)]
     );
 }
