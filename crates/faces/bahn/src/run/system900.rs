@@ -36,10 +36,7 @@ pub(super) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
     files::keep_inputs(&inputs, &options.written())?;
-    let plant = match machine.plant()? {
-        Ok(plant) => plant,
-        Err(faults) => return refused(&faults),
-    };
+    let plant = machine.plant();
     let power_on = power_on(options, &machine)?;
     let script = match load_script(options, &power_on.memory, &plant)? {
         Ok(script) => script,
@@ -185,7 +182,7 @@ fn finish(
     diagnostics::print_faults(&session.play.failures());
     let report = RunReport900::of(&mut session, ended, &machine.folder.name, &options.read);
     if let Some((channel, error)) = report.failure() {
-        say_failure(&session, channel, error, options);
+        say_failure(&session, channel, error);
     }
     let outcome = match ended {
         Ended900::Completed if session.play.failed.is_empty() => Outcome::Fine,
@@ -213,16 +210,18 @@ fn finish(
 }
 
 /// Says it with the block where that is known.
-fn say_failure(session: &Session900, channel: u8, error: &ErrorReport, options: &RunMachineOptions) {
+fn say_failure(session: &Session900, channel: u8, error: &ErrorReport) {
     let program = session
         .host
         .control()
         .reader(channel)
         .and_then(|run| run.program(error.at.program))
         .filter(|_| error.line > 0);
+    // A cycle lies beside the program that calls it.
+    let main = session.host.program_file(channel).unwrap_or_default();
     match program {
         Some(program) => {
-            let file = options.machine.join(&error.program);
+            let file = main.with_file_name(&error.program);
             diagnostics::print_faults(&[error.diagnostic(program, &file)]);
         }
         None => diagnostics::print_usage_error(&error.message),

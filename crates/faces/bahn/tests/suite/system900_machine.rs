@@ -103,6 +103,29 @@ fn faults_have_their_place() {
     }
 }
 
+/// A plant file is checked with the folder, and so is what answers in the place of a PLC.
+#[test]
+fn a_wrong_plant_is_a_fault_of_the_folder() {
+    let folder = portal();
+    let described = folder.read("portal/machine.toml");
+    folder.write(
+        "portal/machine.toml",
+        format!("{described}plant = \"plant.toml\"\nanswers = [\"enable\", \"luck\"]\n"),
+    );
+    folder.write("portal/plant.toml", "[axis.X]\nspeed = 1\n");
+    let run = folder.bahn("machine check portal");
+    assert_eq!(run.code(), 1, "{}", run.out());
+    let said = run.err();
+    assert!(
+        said.contains("`luck` is no answer; there are enable, mode, start, m, tools"),
+        "{said}"
+    );
+    assert!(
+        said.contains("plant.toml:1") && said.contains("needs output"),
+        "{said}"
+    );
+}
+
 /// All that takes the folder of a TNC says why it does not take this one.
 #[test]
 fn what_is_for_a_tnc_says_so() {

@@ -77,9 +77,9 @@ fn both_heads_run_their_programs() {
 fn a_named_program_runs_alone() {
     let folder = portal();
     let run = folder.bahn("run P2000.900 --machine portal --fresh --path p.csv --format json");
-    // Channel 1 has no axis C.
+    // Channel 1 has no tool 11.
     assert_eq!(run.code(), 1, "{}", run.out());
-    assert!(run.err().contains("P2000.900"), "{}", run.err());
+    assert!(run.err().contains("portal/programs/P2000.900:2"), "{}", run.err());
     let run = folder.bahn("run P1000.900 --machine portal --fresh --path p.csv --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     assert_eq!(run.json().get("channels"), None);

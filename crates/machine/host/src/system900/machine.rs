@@ -21,6 +21,8 @@ pub struct Machine900 {
     pub parameters: DataFile,
     /// The channels with their axes, and what of the parameters looks wrong.
     pub checked: Checked,
+    /// The plant, where a file describes it.
+    described: Option<Machine>,
 }
 
 impl Machine900 {
@@ -56,12 +58,20 @@ impl Machine900 {
         let checked = check(&parameters);
         let errors = checked.errors().cloned();
         faults.extend(errors.map(|fault| fault.in_text(&data, parameters.text())));
+        let described = match described(root, &folder) {
+            Ok(described) => described,
+            Err(more) => {
+                faults.extend(more);
+                None
+            }
+        };
         match faults.is_empty() {
             true => Ok(Ok(Machine900 {
                 root: root.to_owned(),
                 folder,
                 parameters,
                 checked,
+                described,
             })),
             false => Ok(Err(faults)),
         }
@@ -94,21 +104,12 @@ impl Machine900 {
         }
     }
 
-    /// The plant as its file describes it, or an ideal one; the inner `Err` holds the faults of the file.
-    ///
-    /// # Errors
-    /// When the file cannot be read.
-    pub fn plant(&self) -> Result<Result<AnyPlant, Vec<Diagnostic>>, HostError> {
-        let Plant900::File(file) = &self.folder.plant else {
-            return Ok(Ok(AnyPlant::new(IdealMachine::of(self.parameters.memory()))));
-        };
-        let path = self.root.join(file);
-        let text = decode(&files::read_description(&path)?);
-        let faults = |faults: Vec<Diagnostic>| -> Vec<Diagnostic> {
-            let faults = faults.into_iter();
-            faults.map(|fault| fault.in_text(&path, &text)).collect()
-        };
-        Ok(Machine::from_toml(&text).map(AnyPlant::new).map_err(faults))
+    /// The plant as its file describes it, or an ideal one.
+    pub fn plant(&self) -> AnyPlant {
+        match &self.described {
+            Some(described) => AnyPlant::new(described.clone()),
+            None => AnyPlant::new(IdealMachine::of(self.parameters.memory())),
+        }
     }
 
     /// What is accepted, but looks wrong.
@@ -119,4 +120,19 @@ impl Machine900 {
         let text = self.parameters.text();
         warnings.map(|fault| fault.in_text(&data, text)).collect()
     }
+}
+
+/// The plant of a file; `None` for an ideal one.
+fn described(root: &Path, folder: &Folder900) -> Result<Option<Machine>, Vec<Diagnostic>> {
+    let Plant900::File(file) = &folder.plant else {
+        return Ok(None);
+    };
+    let path = root.join(file);
+    let bytes = files::read_description(&path)
+        .map_err(|error| vec![Diagnostic::error(Span::default(), error.to_string()).at(&path, "")])?;
+    let text = decode(&bytes);
+    Machine::from_toml(&text).map(Some).map_err(|faults| {
+        let faults = faults.into_iter();
+        faults.map(|fault| fault.in_text(&path, &text)).collect()
+    })
 }

@@ -155,6 +155,17 @@ impl<P: Operable> Host<P, Control900> {
         self.now.control.take_warnings(channel)
     }
 
+    /// The file of the program of a channel, from 1 on, as it was read last.
+    pub fn program_file(&self, channel: u8) -> Option<PathBuf> {
+        let of = self
+            .now
+            .aside
+            .programs
+            .get(usize::from(channel).checked_sub(1)?)?;
+        let number = (*of.first()?)?;
+        Some(self.beside.file(number))
+    }
+
     /// Programs whose numbers were written are read.
     fn take_programs(&mut self) {
         for channel in 1..=self.now.control.channels() {
