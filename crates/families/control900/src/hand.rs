@@ -362,7 +362,7 @@ fn seek(
     unit.mover = Mover::Reference;
     let feed = feed.min(place.block.max_mm_min);
     unit.drive(now.time_s, Aim::Feed(direction.sign() * feed), feed);
-    let [minus, plus] = place.block.reference_directions;
+    let [plus, minus] = place.block.reference_directions;
     let counts = if direction == Direction::Plus { plus } else { minus };
     if hand.released && counts && take_mark(place, hand, unit) {
         hand.seeks = None;

@@ -11,4 +11,5 @@ mod couplings;
 mod language;
 mod m_functions;
 mod monitors;
+mod parameters;
 mod programs;
