@@ -11,5 +11,7 @@ mod couplings;
 mod language;
 mod m_functions;
 mod monitors;
-mod parameters;
+mod parameters_of_axes;
+mod parameters_of_channels;
+mod parameters_of_devices;
 mod programs;
