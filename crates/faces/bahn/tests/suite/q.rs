@@ -32,7 +32,7 @@ fn explain() {
     let expected = json!({
         "name": "P12360", "base": "P12160", "title": "Actual lag", "kind": "status", "unit": "mm, degree",
         "values": "", "default": "", "default_number": null, "source": "[002:8370] [002:8387]",
-        "needs": "nothing", "effect": "stored", "reason": "no control runs by it yet", "plc": [],
+        "needs": "nothing", "effect": "acts", "reason": "", "plc": [],
     });
     assert_eq!(rows[0], expected);
     // $030201 = 3 * 65536 + 2 * 256 + 1.
