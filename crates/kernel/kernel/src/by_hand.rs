@@ -106,10 +106,11 @@ fn along(unit: &AxisUnit, direction: Direction, feed: f64) -> Aim {
         Direction::Plus => (greatest, unit.nominal >= greatest),
         Direction::Minus => (least, unit.nominal <= least),
     };
-    if beyond {
-        Aim::Feed(0.0)
-    } else {
-        Aim::Position(limit)
+    match limit.is_finite() {
+        _ if beyond => Aim::Feed(0.0),
+        true => Aim::Position(limit),
+        // There is no limit on this side.
+        false => Aim::Feed(direction.sign() * feed),
     }
 }
 

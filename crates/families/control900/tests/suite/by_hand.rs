@@ -29,6 +29,21 @@ fn a_direction_key_moves_an_axis() {
     assert_eq!((rig.read("P12151"), rig.read("P12185")), (30.0, 1.0));
 }
 
+/// On a side without software limit the key moves the axis until it is released.
+#[test]
+fn a_direction_key_needs_no_limit() {
+    let mut rig = Rig::on("q2030: 30\n");
+    for (name, value) in [("P8750", "1"), ("P8751", "1"), ("P8755", "1200"), ("P8752", "2")] {
+        rig.operator(name, value);
+    }
+    rig.seconds(3.0);
+    rig.operator("P8752", "0");
+    rig.seconds(0.5);
+    // 20 mm/s for three seconds, less half of a ramp of 50 ms, and as much again to the stop.
+    let stopped = rig.read("P12151");
+    assert!((-60.6..=-59.5).contains(&stopped), "{stopped}");
+}
+
 /// A step of the table, 10 mm, and of the next one, 1 mm.
 #[test]
 fn a_step_moves_an_axis() {
