@@ -371,6 +371,12 @@ impl BitRange {
         }
     }
 
+    /// The cells of its markers, which follow each other.
+    pub(crate) fn cells(self) -> std::ops::Range<usize> {
+        let first = usize::from(BitArea::M.first_cell() + self.first);
+        first..first + usize::from(self.count)
+    }
+
     /// The markers of the range, by rising number.
     pub fn iter(self) -> impl Iterator<Item = Bit> {
         (0..self.count).filter_map(move |index| self.get(index))

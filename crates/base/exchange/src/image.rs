@@ -1,7 +1,7 @@
 //! The memory behind the operands.
 
 use crate::address::{BYTES, BYTES_AT};
-use crate::{Bit, BitArea, Number, Size, signal};
+use crate::{Bit, BitArea, BitRange, Number, Size, signal};
 
 /// Cells of an image; a power of two, so that a masked index needs no check.
 pub const CELLS: usize = 8192;
@@ -52,6 +52,12 @@ impl Image {
     #[inline]
     pub fn set_bit(&mut self, bit: Bit, value: bool) {
         self.cells[bit.cell() & MASK] = value.into();
+    }
+
+    /// Whether any marker of a range is set.
+    pub fn any(&self, markers: BitRange) -> bool {
+        let cells = self.cells.get(markers.cells()).unwrap_or_default();
+        cells.iter().fold(0, |any, cell| any | cell) != 0
     }
 
     /// The value of a number operand, sign-extended [000:12099].

@@ -9,7 +9,7 @@
 //! their loops and no program is on its way, or it waits at the strobe of an M function or at a programmed stop
 
 use bahn_exchange::{Bit, Image, signal};
-use bahn_kernel::{AxisId, PerChannel};
+use bahn_kernel::{AxisId, AxisUnit, PerChannel};
 use bahn_parameters::ControlModel;
 use bahn_path::Axis;
 use bahn_plc::{PlcProgram, Subject, accesses};
@@ -47,14 +47,13 @@ impl AxisSwitchover {
         if !self.assigns || machine.plc.scans == 0 {
             return;
         }
-        let wanted = letters(machine, internal_axis(machine.memory.first().nc()));
-        let changes = |(id, letter): &(AxisId, Axis)| {
-            let mut axes = machine.core.axes.owned(0);
-            axes.any(|unit| unit.id == *id && unit.axis != *letter)
-        };
-        let changed: Vec<_> = wanted.into_iter().filter(changes).collect();
-        if changed.is_empty()
-            || !hand_over::rests(channels.first())
+        let internal = internal_axis(machine.memory.first().nc());
+        let changed = || changed(machine, internal);
+        if changed().next().is_none() {
+            return;
+        }
+        let changed: Vec<_> = changed().collect();
+        if !hand_over::rests(channels.first())
             || !changed.iter().all(|(id, _)| machine.core.axes.may_leave(*id))
         {
             return;
@@ -76,27 +75,19 @@ fn internal_axis(nc: &Image) -> Option<Axis> {
     }
 }
 
-/// The letters of all axes when axis IV is an internal one, or none. A machine without axis IV has nothing to assign.
-fn letters(machine: &MachineSide, internal: Option<Axis>) -> Vec<(AxisId, Axis)> {
-    let own = || {
-        let axes = machine.core.axes.owned(0);
-        axes.map(|unit| {
-            (
-                unit.id,
-                unit.parameters.index,
-                unit.parameters.letter.unwrap_or(unit.axis),
-            )
-        })
-    };
-    let fourth = own()
-        .find(|(_, index, _)| *index == AXIS_IV)
-        .map(|(_, _, letter)| letter);
-    let places = internal.zip(fourth);
-    own()
-        .map(|(id, _, letter)| match places {
-            Some((internal, fourth)) if letter == internal => (id, fourth),
-            Some((internal, fourth)) if letter == fourth => (id, internal),
-            _ => (id, letter),
-        })
-        .collect()
+/// The axes whose letters change when axis IV is an internal one, or none, and these letters. A machine without axis IV has
+/// nothing to assign.
+fn changed(machine: &MachineSide, internal: Option<Axis>) -> impl Iterator<Item = (AxisId, Axis)> {
+    let own = machine.core.axes.owned(0);
+    let letter = |unit: &AxisUnit| unit.parameters.letter.unwrap_or(unit.axis);
+    let fourth = own.clone().find(|unit| unit.parameters.index == AXIS_IV);
+    let places = internal.zip(fourth.map(letter));
+    own.filter_map(move |unit| {
+        let wanted = match (places, letter(unit)) {
+            (Some((internal, fourth)), letter) if letter == internal => fourth,
+            (Some((internal, fourth)), letter) if letter == fourth => internal,
+            (_, letter) => letter,
+        };
+        (unit.axis != wanted).then_some((unit.id, wanted))
+    })
 }

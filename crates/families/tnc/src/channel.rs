@@ -342,7 +342,10 @@ impl Channel {
     pub fn inform(&self, machine: &mut MachineSide) {
         let (axes, link) = (machine.core.axes.owned(self.number), &mut machine.link);
         let spindle = machine.spindles.of(self.number);
-        status::coordinates(axes, &self.datums.chain, &self.run, self.desk.by_hand(), link);
+        if machine.plc.reads_coordinates {
+            status::coordinates(axes, &self.datums.chain, &self.run, self.desk.by_hand(), link);
+        }
+        status::working_plane(&self.datums.chain, &self.run, self.desk.by_hand().leans, link);
         let executed = self.run.selection.program.as_deref();
         let tested = self.test.as_ref().map(TestRun::program);
         status::items(self.desk.mode(), &self.desk.manual, executed, tested, link);

@@ -171,5 +171,5 @@ pub use test_command::TestCommand;
 pub use test_run::{TestReport, TestState};
 pub use tool::{Edges, MovedTool, Tool, ToolLife};
 pub use view::{ChannelView, InForce};
-pub use watch::AxisWatch;
+pub use watch::{AxisFollowing, AxisWatch};
 pub use window::Window;

@@ -107,6 +107,8 @@ pub(crate) struct PlcUnit {
     period_us: u64,
     /// Scans that were started.
     pub scans: u64,
+    /// Its program calls modules 9040 or 9041: few do, and to find all coordinates before each scan is long.
+    pub reads_coordinates: bool,
 }
 
 /// The inputs and outputs of the PLC with their operands.
@@ -122,6 +124,7 @@ struct Wiring {
 impl PlcUnit {
     pub fn new(program: std::sync::Arc<PlcProgram>, model: ControlModel) -> PlcUnit {
         PlcUnit {
+            reads_coordinates: program.calls_any(&[9040, 9041]),
             machine: Machine::new(program, Start::PowerOn),
             due_us: 0,
             period_us: model.limits().plc_cycle_us.into(),

@@ -428,10 +428,10 @@ impl Messages {
             true => FaultId::PlcMessageFlashing,
             false => FaultId::PlcMessage,
         };
-        let mut any = false;
-        for (number, marker) in (0..).zip(signal::PLC_MESSAGES.iter()) {
-            if nc.bit(marker) {
-                any = true;
+        let any = nc.any(signal::PLC_MESSAGES);
+        if any {
+            let markers = (0..).zip(signal::PLC_MESSAGES.iter());
+            for (number, _) in markers.filter(|(_, marker)| nc.bit(*marker)) {
                 if flashes {
                     self.flash(&Message::Plc(number));
                 }

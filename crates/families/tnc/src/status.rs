@@ -232,6 +232,10 @@ pub(crate) fn coordinates<'a>(
     if frame.is_some() {
         link.set_coordinates(CoordinateKind::ShiftedDatum, shifted);
     }
+}
+
+/// What module 9035 reads of the working plane; `leans`: 3D ROT is on.
+pub(crate) fn working_plane(chain: &Chain, run: &ProgramRun, leans: bool, link: &mut PlcLink) {
     // Bit 0: tilted; bit 1: selected for manual operation; bit 2: for program run, by the menu or by the program.
     let tilted = chain.placement().is_some_and(|placement| placement.is_tilted());
     let by_program = match run.progress().is_on_its_way() {
@@ -240,7 +244,7 @@ pub(crate) fn coordinates<'a>(
     };
     link.set_status(
         StatusItem::WorkingPlane,
-        i32::from(tilted) | i32::from(by_hand.leans) << 1 | i32::from(by_program) << 2,
+        i32::from(tilted) | i32::from(leans) << 1 | i32::from(by_program) << 2,
     );
 }
 

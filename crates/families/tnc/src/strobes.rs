@@ -57,9 +57,11 @@ impl Strobes {
     pub fn q_parameter(&mut self, exchange: &mut Exchange) -> Option<(u16, f64)> {
         let nc = exchange.nc();
         if Form::of(nc) == Form::Markers {
-            let wanted = self.wants_number(nc);
-            self.number_taken |= wanted;
-            let value = marker_codes::q_value(nc).filter(|_| wanted)?;
+            if !self.wants_number(nc) {
+                return None;
+            }
+            self.number_taken = true;
+            let value = marker_codes::q_value(nc)?;
             return Some((Q_FROM_PLC + marker_codes::q_number(nc), value));
         }
         if !nc.bit(signal::TRANSFER_Q_PARAMETER) {

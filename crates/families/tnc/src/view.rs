@@ -16,7 +16,7 @@ use crate::setup::{AxisLimit, Remembered};
 use crate::signal::Signal;
 use crate::snapshot::Snapshot;
 use crate::upkeep::by_index;
-use crate::watch::AxisWatch;
+use crate::watch::{AxisFollowing, AxisWatch};
 use bahn_kernel::Clock;
 
 /// What the status display shows of a program beside positions [003:1297].
@@ -281,6 +281,12 @@ impl<'a> ChannelView<'a> {
         let superimposed = &self.channel.chain().superimposed;
         let axes = self.machine.core.axes.owned(self.channel.number());
         axes.map(|unit| AxisWatch::of(unit, superimposed))
+    }
+
+    /// How the axes that it has now follow.
+    pub fn followings(&self) -> impl Iterator<Item = AxisFollowing> + use<'a> {
+        let axes = self.machine.core.axes.owned(self.channel.number());
+        axes.map(AxisFollowing::of)
     }
 
     /// Where its axes are commanded to be, in the coordinates of its path: without what the handwheel adds to it (M118).

@@ -60,6 +60,33 @@ pub struct AxisWatch {
     pub monitors: [bool; 2],
 }
 
+/// How an axis follows what it is told: what [`AxisSignal`](crate::AxisSignal) has of it in every contour cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisFollowing {
+    /// Its slot in the path of the channel.
+    pub axis: Axis,
+    /// Nominal position in machine coordinates, mm or degrees.
+    pub nominal: f64,
+    /// Actual position in machine coordinates, mm or degrees.
+    pub actual: f64,
+    /// Nominal minus actual position, mm or degrees.
+    pub lag: f64,
+    /// Nominal speed, mm/min.
+    pub nominal_speed: f64,
+}
+
+impl AxisFollowing {
+    pub(crate) fn of(unit: &AxisUnit) -> AxisFollowing {
+        AxisFollowing {
+            axis: unit.axis,
+            nominal: unit.servo.nominal_mm(),
+            actual: unit.servo.actual_mm(),
+            lag: unit.servo.lag_mm(),
+            nominal_speed: unit.speed * 60.0,
+        }
+    }
+}
+
 impl AxisWatch {
     pub(crate) fn of(unit: &AxisUnit, superimposed: &Superimposed) -> AxisWatch {
         let parameters = &unit.parameters;

@@ -132,8 +132,9 @@ impl Clock {
             self.commands = Commands::default();
         }
         // Somebody may have touched the machine meanwhile.
-        self.exchange(family, plant, 0);
+        self.exchange(family, plant, 0, true);
         let timing = family.core().timing;
+        let last = timing.steps().saturating_sub(1);
         for step in 0..timing.steps() {
             if !is_off {
                 self.servo_step(family, step == 0);
@@ -141,7 +142,8 @@ impl Clock {
                     sampler.sample(self.now_us, &ServoView(&family.core().axes));
                 }
             }
-            self.exchange(family, plant, timing.step_us());
+            // What there is after the last step, the next cycle asks for anew.
+            self.exchange(family, plant, timing.step_us(), step != last);
         }
     }
 
@@ -164,15 +166,15 @@ impl Clock {
         family.output(commands);
     }
 
-    /// Lets time pass on the machine, µs.
-    fn exchange(&mut self, family: &mut impl Family, plant: &mut dyn Plant, length_us: u32) {
+    /// Lets time pass on the machine, µs. `asks`: a servo step follows that may look at the inputs.
+    fn exchange(&mut self, family: &mut impl Family, plant: &mut dyn Plant, length_us: u32, asks: bool) {
         let step = Step {
             from_us: self.now_us,
             length_us,
         };
         let before = self.measured.control_ready;
         let until_us = self.now_us + u64::from(length_us);
-        self.commands.reads_inputs = family.looks_at_inputs(until_us);
+        self.commands.reads_inputs = asks && family.looks_at_inputs(until_us);
         plant.exchange(step, &self.commands, &mut self.measured);
         if length_us > 0 {
             family.core().emergency.pass(step, before, &self.measured);

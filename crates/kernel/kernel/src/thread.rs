@@ -319,8 +319,9 @@ impl Tapping {
         let window = rigid.then(|| window_mm(&at.standing()));
         let element = track.path.element();
         for unit in at.axes.iter_mut() {
-            let moves = element.is_some_and(|element| element.moves_axis(unit.axis));
-            unit.servo.set_window(window.filter(|_| moves));
+            let moves = || element.is_some_and(|element| element.moves_axis(unit.axis));
+            let window = window.filter(|_| moves());
+            unit.servo.set_window(window);
         }
         let braking = floating.then(|| {
             let brakes = element.is_some_and(|element| {

@@ -173,16 +173,19 @@ impl Track {
             return true;
         };
         let stands = self.path.speed_mm_s() == 0.0;
+        let able = |unit: &AxisUnit| {
+            unit.is_released() && unit.way_back.is_over() && (unit.servo.closed() || stands)
+        };
+        // Whether the path moves an axis is a longer question, and seldom matters.
         axes.iter()
-            .filter(|unit| element.moves_axis(unit.axis))
-            .all(|unit| unit.is_released() && unit.way_back.is_over() && (unit.servo.closed() || stands))
+            .all(|unit| able(unit) || !element.moves_axis(unit.axis))
     }
 
     /// An axis that the current element moves comes down on its ramp, since its feed is not enabled.
     pub fn ramps_down(&self, axes: &OwnAxes) -> bool {
         let element = self.path.element();
         let moves = |unit: &AxisUnit| element.is_some_and(|element| element.moves_axis(unit.axis));
-        axes.iter().any(|unit| moves(unit) && unit.ramps_down())
+        axes.iter().any(|unit| unit.ramps_down() && moves(unit))
     }
 
     /// A block wants a clamped axis: the markers M2008 ff. of its axes fall, and the PLC unclamps them [000:5407].

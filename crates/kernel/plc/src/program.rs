@@ -400,6 +400,16 @@ impl PlcProgram {
             .map_or("", String::as_str)
     }
 
+    /// Whether it calls any of these internal modules somewhere.
+    pub fn calls_any(&self, modules: &[u16]) -> bool {
+        let calls = self.code.iter().filter_map(|instruction| match &instruction.op {
+            Op::Call { target, .. } | Op::Submit { target } => Some(target),
+            _ => None,
+        });
+        let mut targets = calls.chain(self.cases.iter().flatten());
+        targets.any(|target| matches!(target, Target::Module(number) if modules.contains(number)))
+    }
+
     /// Name of the file of this index; empty where there is none.
     pub fn file_name(&self, file: u16) -> &str {
         self.files

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use bahn_control900::Control900;
-use bahn_path::{PathElement, PerAxis};
+use bahn_path::{PathElement, PerAxis, Position};
 
 use crate::{Host, Operable};
 
@@ -25,6 +25,16 @@ impl ElementId {
             sequence: element.sequence,
             ends: [element.start, element.end].map(|position| position.values().map(f64::to_bits)),
         }
+    }
+
+    /// Whether it is that of an element.
+    pub fn is_of(&self, element: &PathElement) -> bool {
+        let is = |bits: &PerAxis<u64>, position: &Position| {
+            let mut both = bits.iter().zip(position.values().iter());
+            both.all(|(bits, value)| *bits == value.to_bits())
+        };
+        let [start, end] = &self.ends;
+        self.sequence == element.sequence && is(start, &element.start) && is(end, &element.end)
     }
 }
 
@@ -86,17 +96,21 @@ impl ExecutedPath {
         self.ahead.extend(prepared);
         let Some((current, has_ended)) = now else { return };
         if let Some((element, rest_mm)) = current {
-            self.last_seen = Some((ElementId::of(element), rest_mm));
+            match &mut self.last_seen {
+                // Most cycles go on in the element of the one before.
+                Some((seen, rest)) if seen.is_of(element) => *rest = rest_mm,
+                seen => *seen = Some((ElementId::of(element), rest_mm)),
+            }
         }
-        self.done = match (has_ended, current) {
-            (true, _) => self.ahead.len(),
-            (false, Some((current, _))) => self.before(ElementId::of(current)),
-            (false, None) => 0,
+        self.done = match (has_ended, current, &self.last_seen) {
+            (true, ..) => self.ahead.len(),
+            (false, Some(_), Some((current, _))) => self.before(current),
+            (false, ..) => 0,
         };
     }
 
     /// So many stand before an element. A cycle has many of one place in the run.
-    fn before(&self, current: ElementId) -> usize {
+    fn before(&self, current: &ElementId) -> usize {
         let own = self.ahead.iter();
         let earlier = own
             .clone()
@@ -105,17 +119,17 @@ impl ExecutedPath {
         let same = own
             .skip(earlier)
             .take_while(|own| own.sequence == current.sequence)
-            .position(|own| ElementId::of(own) == current);
+            .position(|own| current.is_of(own));
         earlier + same.unwrap_or(0)
     }
 
     /// Of a run that was broken off in a block: what was executed to the end counts, too, and is handed out next.
     pub fn finish(&mut self) {
-        self.done = self.last_seen.map_or(0, |(current, rest_mm)| {
+        self.done = self.last_seen.as_ref().map_or(0, |(current, rest_mm)| {
             let count = self.before(current);
             let last = self.ahead.get(count);
-            let last = last.filter(|element| ElementId::of(element) == current);
-            count + usize::from(last.is_some() && rest_mm <= DONE_MM)
+            let last = last.filter(|element| current.is_of(element));
+            count + usize::from(last.is_some() && *rest_mm <= DONE_MM)
         });
     }
 

@@ -2,7 +2,7 @@
 
 use bahn_machine::Machine;
 use bahn_path::{Axis, BlockRef, Curve, FeedRate, OverrideLaw, PathElement, Position};
-use bahn_tnc::{AxisSignal, ChannelView, Signal};
+use bahn_tnc::{ChannelView, Signal};
 
 /// Threads that are listed at most.
 const THREADS_MAX: usize = 1000;
@@ -120,11 +120,10 @@ impl Threads {
 impl Place {
     fn look(channel: ChannelView, plant: &Machine) -> Place {
         let (mut axes, mut lag) = (Position::UNKNOWN, Position::UNKNOWN);
-        for letter in channel.axis_letters() {
-            let axis = u8::try_from(letter).ok().and_then(Axis::from_letter);
-            if let (Some(axis), Some(state)) = (axis, plant.axis(letter)) {
-                axes[axis] = state.position;
-                lag[axis] = channel.observe(&Signal::Axis(letter, AxisSignal::Lag));
+        for following in channel.followings() {
+            if let Some(position) = plant.position(following.axis.letter()) {
+                axes[following.axis] = position;
+                lag[following.axis] = following.lag;
             }
         }
         // Each channel has a spindle of its own.

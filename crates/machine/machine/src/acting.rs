@@ -328,6 +328,7 @@ fn no<'a>(what: &'static str, name: &str, known: impl Iterator<Item = &'a str>) 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may fail")]
+    use crate::clock::Span;
     use bahn_servo::{Commands, Measured, OUTPUTS, Plant, Step};
     use proptest::prelude::*;
 
@@ -369,11 +370,18 @@ mod tests {
     /// Event, output that is switched, nominal voltage of all drives, milliseconds until the next.
     type Action = (usize, usize, f64, u32);
 
+    /// A single step, without a tick.
+    const STEP: Span = Span {
+        steps: 1,
+        first: 2,
+        each: 5,
+    };
+
     /// What a step without any shortcut does to all axes: for each of them the state and the encoder.
     fn stepped(machine: &Machine) -> String {
         let axes = machine.mechanism.axes.iter().cloned().map(|mut axis| {
             let load = axis.load();
-            axis.step(&load, 2e-4);
+            axis.advance(&load, STEP, 2e-4);
             format!("{axis:?}")
         });
         axes.collect()
@@ -381,7 +389,7 @@ mod tests {
 
     fn run(machine: &mut Machine) -> String {
         let axes = machine.mechanism.axes.iter().cloned().map(|mut axis| {
-            axis.run(1, 2e-4);
+            axis.run(STEP, 2e-4);
             format!("{axis:?}")
         });
         axes.collect()

@@ -1,5 +1,6 @@
 //! A feed axis: amplifier and motor, guideway, play, ends of travel, encoder.
 
+use crate::clock::Span;
 use crate::current_drive::CurrentDrive;
 use crate::deviation::Deviation;
 use crate::encoder::{Counter, EncoderFault};
@@ -330,7 +331,7 @@ impl Axis {
 
     /// The encoder counts from where it says that the axis is at power-on.
     fn set_zero(&mut self) {
-        let measured = self.measured();
+        let measured = self.measured(self.motor, self.table);
         self.seen = measured;
         if let Some(counter) = self.counter.as_mut().filter(|_| self.deviation.is_some()) {
             counter.begin(measured);
@@ -363,7 +364,7 @@ impl Axis {
     /// Stands there at power-on: incremental encoders count from 0 again.
     pub fn stand_at(&mut self, place: &AxisPlace) {
         (self.table, self.motor, self.motor_start) = (place.table, place.motor, place.motor);
-        self.seen = self.measured();
+        self.seen = self.measured(self.motor, self.table);
         if let Some(counter) = &mut self.counter {
             counter.begin(self.seen);
         }
@@ -411,17 +412,16 @@ impl Axis {
             .is_some()
     }
 
-    /// Some steps of the simulation, between which nobody acts.
-    pub fn run(&mut self, steps: u32, step_s: f64) {
+    /// Some steps of the simulation, between which nobody acts. At which of their ticks no limit switch is actuated: the first
+    /// one is the lowest bit.
+    pub fn run(&mut self, span: Span, step_s: f64) -> u32 {
         if self.lies_still() {
             self.driven = 0.0;
             self.speed = 0.0;
-            return;
+            return if self.limits_clear() { u32::MAX } else { 0 };
         }
         let load = self.load();
-        for _ in 0..steps {
-            self.step(&load, step_s);
-        }
+        self.advance(&load, span, step_s)
     }
 
     /// What acts on it as long as nobody acts.
@@ -444,45 +444,61 @@ impl Axis {
         stands && (self.clamped || self.jammed || held(self))
     }
 
-    /// One step of the simulation.
-    #[inline(always)]
-    pub fn step(&mut self, load: &Load, step_s: f64) {
-        let mut acceleration = load.outside;
-        self.driven = 0.0;
-        if self.powered {
-            let mut volts = load.volts;
-            if self.noise_volts > 0.0 {
-                volts += self.noise.next() * self.noise_volts;
-            }
-            self.driven = match &mut self.current {
-                None => self.motor_acceleration(volts),
-                Some(drive) => drive.force(volts) * self.per_force,
-            };
-            acceleration += self.driven;
-        }
-        let before = self.speed;
-        let mut speed = if load.fixed {
-            0.0
-        } else {
-            rubbed(before, acceleration, load.friction, load.stiction, step_s)
-        };
-        let mut motor = self.motor + (speed + (before - speed) * self.early) * step_s;
-        // The hard stops.
+    /// [`Axis::run`] under a load.
+    pub fn advance(&mut self, load: &Load, span: Span, step_s: f64) -> u32 {
+        // Local, so that they are registers of the host from step to step.
+        let (mut speed, mut motor, mut table) = (self.speed, self.motor, self.table);
         let [first, last] = self.travel;
-        if motor < first {
-            (motor, speed) = (first, speed.max(0.0));
-        } else if motor > last {
-            (motor, speed) = (last, speed.min(0.0));
+        let (mut clear, mut tick, mut until) = (0, 1, span.first);
+        for _ in 0..span.steps {
+            let mut acceleration = load.outside;
+            self.driven = 0.0;
+            if self.powered {
+                self.driven = self.drive(load.volts, speed);
+                acceleration += self.driven;
+            }
+            let before = speed;
+            speed = if load.fixed {
+                0.0
+            } else {
+                rubbed(before, acceleration, load.friction, load.stiction, step_s)
+            };
+            motor += (speed + (before - speed) * self.early) * step_s;
+            // The hard stops.
+            if motor < first {
+                (motor, speed) = (first, speed.max(0.0));
+            } else if motor > last {
+                (motor, speed) = (last, speed.min(0.0));
+            }
+            table = within(table, motor - load.half_play, motor + load.half_play);
+            table = within(table, first, last);
+            if let Some(deviation) = &mut self.deviation {
+                deviation.advance();
+            }
+            self.seen = self.measured(motor, table);
+            if let Some(counter) = &mut self.counter {
+                counter.move_to(self.seen);
+            }
+            until -= 1;
+            if until == 0 {
+                clear |= if self.is_clear_at(table) { tick } else { 0 };
+                (tick, until) = (tick << 1, span.each);
+            }
         }
-        (self.motor, self.speed) = (motor, speed);
-        let table = within(self.table, motor - load.half_play, motor + load.half_play);
-        self.table = within(table, first, last);
-        if let Some(deviation) = &mut self.deviation {
-            deviation.advance();
+        (self.speed, self.motor, self.table) = (speed, motor, table);
+        clear
+    }
+
+    /// The acceleration by the motor in a step, with its nominal voltage, V, at a speed.
+    #[inline(always)]
+    fn drive(&mut self, volts: f64, speed: f64) -> f64 {
+        let mut volts = volts;
+        if self.noise_volts > 0.0 {
+            volts += self.noise.next() * self.noise_volts;
         }
-        self.seen = self.measured();
-        if let Some(counter) = &mut self.counter {
-            counter.move_to(self.seen);
+        match &mut self.current {
+            None => self.motor_acceleration(volts, speed),
+            Some(drive) => drive.force(volts) * self.per_force,
         }
     }
 
@@ -505,8 +521,8 @@ impl Axis {
     /// The speed controller of the amplifier: proportional and integral, its force limited. The integral
     /// part waits while the force is at its limit.
     #[inline(always)]
-    fn motor_acceleration(&mut self, volts: f64) -> f64 {
-        let error = volts * self.gain - self.speed;
+    fn motor_acceleration(&mut self, volts: f64, speed: f64) -> f64 {
+        let error = volts * self.gain - speed;
         let wanted = (error + self.integral) * self.rate;
         let given = within(wanted, -self.motor_max, self.motor_max);
         if given == wanted {
@@ -515,10 +531,10 @@ impl Axis {
         given
     }
 
-    /// The position where the encoder sits.
+    /// The position where the encoder sits, with motor and table at these.
     #[inline(always)]
-    fn measured(&self) -> f64 {
-        let truth = if self.on_motor { self.motor } else { self.table };
+    fn measured(&self, motor: f64, table: f64) -> f64 {
+        let truth = if self.on_motor { motor } else { table };
         match &self.deviation {
             None => truth,
             Some(deviation) => deviation.seen(truth),
@@ -562,7 +578,13 @@ impl Axis {
 
     /// No limit switch is actuated.
     pub fn limits_clear(&self) -> bool {
-        !self.limits.iter().flatten().any(|cam| cam.holds(self.table))
+        self.is_clear_at(self.table)
+    }
+
+    /// No limit switch is actuated with the table there.
+    #[inline]
+    fn is_clear_at(&self, table: f64) -> bool {
+        !self.limits.iter().flatten().any(|cam| cam.holds(table))
     }
 
     /// Sets reference cam, pulse inhibit, limit switches and ready contact. Limit switches open when actuated.

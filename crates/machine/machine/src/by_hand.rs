@@ -16,11 +16,13 @@ impl ByHand {
         self.tool = tool;
     }
 
-    /// The tool that is called goes into the spindle, once for each call.
-    pub fn called(&mut self, tool: u32) {
-        if self.called != tool {
+    /// The tool that is called goes into the spindle, once for each call; whether this is a call.
+    pub fn called(&mut self, tool: u32) -> bool {
+        let is_call = self.called != tool;
+        if is_call {
             (self.called, self.tool) = (tool, tool);
         }
+        is_call
     }
 
     /// The tool, and the one that was called.

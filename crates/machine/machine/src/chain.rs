@@ -221,17 +221,30 @@ impl Chain {
             return false;
         }
         self.changing_ms += 1;
-        let delay = match (self.relay, self.fault) {
-            (false, _) => self.pull_in_ms,
-            (true, Some(RelayFault::Slow(delay))) => delay,
-            (true, _) => self.drop_out_ms,
-        };
-        let switches = self.changing_ms >= delay;
+        let switches = self.changing_ms >= self.delay_ms();
         if switches {
             self.relay = wanted;
             self.changing_ms = 0;
         }
         switches
+    }
+
+    /// How long the relay takes to change.
+    fn delay_ms(&self) -> u32 {
+        match (self.relay, self.fault) {
+            (false, _) => self.pull_in_ms,
+            (true, Some(RelayFault::Slow(delay))) => delay,
+            (true, _) => self.drop_out_ms,
+        }
+    }
+
+    /// So many milliseconds the relay stays as it is, whatever the axes do. Nobody knows that of a chain with another
+    /// machine in it.
+    pub fn steady_ms(&self) -> u32 {
+        match self.coupled {
+            Some(_) => 0,
+            None => self.delay_ms().saturating_sub(self.changing_ms + 1),
+        }
     }
 
     /// What arrives of the PLC's outputs at the machine.

@@ -7,27 +7,52 @@ pub(crate) const TICK_US: u32 = 1000;
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
     step_us: u32,
+    /// Steps of a whole tick.
+    tick_steps: u32,
     /// The length of a step, s.
     pub step_s: f64,
     /// Time since power-on, µs.
     pub time_us: u64,
     /// Time has passed since the encoders were read.
     pub moved_on: bool,
-    /// Time that has not filled a step, and steps that have not filled a tick, µs.
+    /// Time that has not filled a step, µs.
     pending_us: u32,
-    tick_us: u32,
+    /// Steps to the next tick.
+    until_tick: u32,
+}
+
+/// Steps in which the parts of the machine do not see each other, and the ticks after some of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    /// How many steps.
+    pub steps: u32,
+    /// The first tick comes after so many of them, each other one so many later.
+    pub first: u32,
+    pub each: u32,
+}
+
+impl Span {
+    /// How many ticks.
+    pub fn ticks(self) -> u32 {
+        match self.steps.checked_sub(self.first) {
+            Some(after) => 1 + after / self.each,
+            None => 0,
+        }
+    }
 }
 
 impl Clock {
     /// Steps of so many µs, which divide a tick.
     pub fn new(step_us: u32) -> Clock {
+        let tick_steps = TICK_US / step_us.max(1);
         Clock {
             step_us,
+            tick_steps,
             step_s: f64::from(step_us) * 1e-6,
             time_us: 0,
             moved_on: true,
             pending_us: 0,
-            tick_us: 0,
+            until_tick: tick_steps,
         }
     }
 
@@ -38,25 +63,19 @@ impl Clock {
         self.pending_us = self.pending_us.saturating_add(micros);
     }
 
-    /// How many steps are due at once: up to a tick the parts do not see each other.
-    pub fn next_steps(&mut self) -> Option<u32> {
+    /// The steps that are due, up to so many ticks, one at least.
+    pub fn next_span(&mut self, ticks: u32) -> Option<Span> {
         if self.pending_us < self.step_us {
             return None;
         }
-        let steps = (self.pending_us / self.step_us).min((TICK_US - self.tick_us) / self.step_us);
-        let length_us = steps * self.step_us;
-        self.pending_us -= length_us;
-        self.tick_us += length_us;
-        Some(steps)
-    }
-
-    /// These steps have filled a tick.
-    pub fn ticks(&mut self) -> bool {
-        let ticks = self.tick_us >= TICK_US;
-        if ticks {
-            self.tick_us = 0;
-        }
-        ticks
+        let (first, each) = (self.until_tick, self.tick_steps);
+        let steps = (self.pending_us / self.step_us).min(first + (ticks - 1) * each);
+        self.pending_us -= steps * self.step_us;
+        self.until_tick = match steps.checked_sub(first) {
+            Some(after) => each - after % each,
+            None => first - steps,
+        };
+        Some(Span { steps, first, each })
     }
 
     /// Time that waits for a step, µs.

@@ -269,6 +269,12 @@ impl Machine {
         self.axes().find(|axis| axis.letter == letter)
     }
 
+    /// Where the table of an axis stands, mm or degrees.
+    pub fn position(&self, letter: char) -> Option<f64> {
+        let mut axes = self.mechanism.axes.iter();
+        axes.find(|axis| axis.letter == letter).map(|axis| axis.table)
+    }
+
     /// The true state of the spindle, or of the first one.
     pub fn spindle(&self) -> Option<SpindleState> {
         self.spindles().next()
@@ -306,7 +312,7 @@ impl Machine {
 
     /// A tool was called and its change is confirmed: unless the magazine has changed it, who stands at the machine has.
     pub fn tool_is_called(&mut self, tool: u32) {
-        self.mechanism.by_hand.called(tool);
+        self.rests &= !self.mechanism.by_hand.called(tool);
     }
 
     /// Number of the tool in the spindle, whether magazine or operator has put it there.
@@ -334,14 +340,21 @@ impl Machine {
         self.chain.couple(other, delay_ms, input);
     }
 
-    /// Contacts, relays and things: once in a millisecond.
-    fn tick(&mut self) {
-        self.rests &= !self.panel.advance();
+    /// The probe is a tool, too, on some machines.
+    fn hold_probe(&mut self) {
+        if self.mechanism.probe.is_none() {
+            return;
+        }
         let (tool, angle) = (self.tool_in_spindle(), self.mechanism.spindle_deg());
         if let Some(probe) = &mut self.mechanism.probe {
             probe.is_held(tool, angle);
         }
-        let limits_clear = !self.chain.watches_limits() || self.limit_switches_clear();
+    }
+
+    /// Contacts, relays and things: once in a millisecond. `limits_clear`: no limit switch is actuated then.
+    fn tick(&mut self, limits_clear: bool) {
+        self.rests &= !self.panel.advance();
+        self.hold_probe();
         let key = self.voltage_key.is_some_and(|place| self.panel.pressed(place));
         let switches = self.chain.advance(limits_clear, key);
         if self.rests && !switches {
@@ -454,23 +467,32 @@ impl Machine {
     fn pass(&mut self, micros: u32) -> Option<u32> {
         let (before, mut changed_at) = (self.control_ready(), None);
         self.clock.add(micros);
-        while let Some(steps) = self.clock.next_steps() {
+        while let Some(span) = self.clock.next_span(self.ticks_at_once()) {
+            let mut clear = u32::MAX;
             for axis in &mut self.mechanism.axes {
-                axis.run(steps, self.clock.step_s);
+                clear &= axis.run(span, self.clock.step_s);
             }
             for spindle in &mut self.mechanism.spindles {
-                for _ in 0..steps {
-                    spindle.step(self.clock.step_s);
-                }
+                spindle.run(span.steps, self.clock.step_s);
             }
-            if self.clock.ticks() {
-                self.tick();
+            for tick in 0..span.ticks() {
+                self.tick(clear >> tick & 1 != 0);
                 if changed_at.is_none() && self.control_ready() != before {
                     changed_at = Some(micros.saturating_sub(self.clock.pending_us()));
                 }
             }
         }
         changed_at
+    }
+
+    /// How many ticks each axis may go through before another part looks: all in which contacts, relays and things stay as they
+    /// are, whatever the axes do. Most of the time that is so.
+    fn ticks_at_once(&self) -> u32 {
+        let rests = self.rests && !self.panel.is_tapped() && !self.plc.has_faults();
+        match rests {
+            true => self.chain.steady_ms().clamp(1, u32::BITS),
+            false => 1,
+        }
     }
 
     /// Sets a nominal value output, V.

@@ -95,6 +95,11 @@ impl Panel {
         self.keys.get(place).is_some_and(|key| key.pressed)
     }
 
+    /// A key goes back by itself soon.
+    pub fn is_tapped(&self) -> bool {
+        self.key_is_tapped || self.wheel_is_tapped
+    }
+
     /// Lets a millisecond pass; whether a key goes back by itself in it.
     pub fn advance(&mut self) -> bool {
         let tapped = self.key_is_tapped;

@@ -68,6 +68,11 @@ impl PlcSide {
         self.stuck.retain(|(stuck, _)| *stuck != input);
     }
 
+    /// A contact fails.
+    pub fn has_faults(&self) -> bool {
+        !self.stuck.is_empty()
+    }
+
     /// All contacts are whole.
     pub fn loosen_all(&mut self) {
         self.stuck.clear();

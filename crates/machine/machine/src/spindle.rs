@@ -165,19 +165,30 @@ impl Spindle {
         self.powered = voltage && enabled && self.fault != Some(DriveFault::Dead);
     }
 
-    /// One step of the simulation.
-    #[inline]
-    pub fn step(&mut self, step_s: f64) {
-        let change = if self.powered {
-            ((self.nominal() - self.motor) * self.rate).clamp(-self.acceleration_max, self.acceleration_max)
-                * step_s
-        } else {
-            slowed(self.motor, self.coasting * step_s)
+    /// Some steps of the simulation, between which nobody acts.
+    pub fn run(&mut self, steps: u32, step_s: f64) {
+        let nominal = self.powered.then(|| self.nominal());
+        let ratio = self
+            .engaged
+            .and_then(|gear| self.gears.get(gear))
+            .map(|gear| gear.ratio);
+        for _ in 0..steps {
+            self.step(nominal, ratio, step_s);
+        }
+    }
+
+    /// One step of the simulation: with a motor speed that the drive aims at, rpm, in a gear.
+    #[inline(always)]
+    fn step(&mut self, nominal: Option<f64>, ratio: Option<f64>, step_s: f64) {
+        self.motor += match nominal {
+            Some(nominal) => {
+                let wanted = (nominal - self.motor) * self.rate;
+                wanted.clamp(-self.acceleration_max, self.acceleration_max) * step_s
+            }
+            None => slowed(self.motor, self.coasting * step_s),
         };
-        self.motor += change;
-        let gear = self.engaged.and_then(|gear| self.gears.get(gear));
-        match gear {
-            Some(gear) => self.rpm = self.motor / gear.ratio,
+        match ratio {
+            Some(ratio) => self.rpm = self.motor / ratio,
             None => self.rpm += slowed(self.rpm, self.coasting * step_s),
         }
         if self.rpm != 0.0 {

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use bahn_path::BlockRef;
-use bahn_tnc::{AxisSignal, ChannelView, Signal};
+use bahn_tnc::{AxisFollowing, ChannelView, Signal};
 
 use super::cause::{Cause, Moment};
 
@@ -69,45 +69,55 @@ impl Deviation {
             max_mm: 0.0,
             cause: None,
         };
-        deviation.meet(channel);
+        for letter in channel.axis_letters() {
+            deviation.meet(letter);
+        }
         deviation
     }
 
-    /// Axes may come from another channel.
-    fn meet(&mut self, channel: ChannelView) {
-        for letter in channel.axis_letters() {
-            if !self.axes.iter().any(|axis| axis.letter == letter) {
-                self.axes.push(AxisExtremes {
-                    letter,
-                    max_lag: 0.0,
-                    lag_block: None,
-                    max_deviation: 0.0,
-                    deviation_block: None,
-                    linear: self.linear.iter().position(|own| *own == letter),
-                });
-            }
+    /// What is known of an axis, which may come from another channel.
+    fn meet(&mut self, letter: char) -> &mut AxisExtremes {
+        let known = self.axes.iter().position(|axis| axis.letter == letter);
+        let place = known.unwrap_or(self.axes.len());
+        if known.is_none() {
+            self.axes.push(AxisExtremes {
+                letter,
+                max_lag: 0.0,
+                lag_block: None,
+                max_deviation: 0.0,
+                deviation_block: None,
+                linear: self.linear.iter().position(|own| *own == letter),
+            });
         }
+        &mut self.axes[place]
+    }
+
+    /// Looks at the lag of an axis. Its place among those that span the contour.
+    fn look(&mut self, following: &AxisFollowing, block: Option<BlockRef>) -> Option<usize> {
+        let axis = self.meet(following.axis.letter());
+        let lag = following.lag.abs();
+        if lag > axis.max_lag {
+            (axis.max_lag, axis.lag_block) = (lag, block);
+        }
+        axis.linear
     }
 
     /// Takes a contour cycle of a running program. `contour` says that it is machined, not positioned.
     pub fn cycle(&mut self, channel: ChannelView, contour: bool) {
-        self.meet(channel);
         let block = channel.element().map(|element| element.block);
-        for axis in &mut self.axes {
-            let lag = channel.observe(&Signal::Axis(axis.letter, AxisSignal::Lag)).abs();
-            if lag > axis.max_lag {
-                (axis.max_lag, axis.lag_block) = (lag, block);
+        let (mut nominal, mut actual, mut speed) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for following in channel.followings() {
+            let linear = self.look(&following, block);
+            for (point, value) in [
+                (&mut nominal, following.nominal),
+                (&mut actual, following.actual),
+                (&mut speed, following.nominal_speed),
+            ] {
+                if let Some(own) = linear.and_then(|place| point.get_mut(place)) {
+                    *own = value;
+                }
             }
         }
-        let read = |signal| {
-            let mut point = [0.0; 3];
-            for (value, letter) in point.iter_mut().zip(&self.linear) {
-                *value = channel.observe(&Signal::Axis(*letter, signal));
-            }
-            point
-        };
-        let (nominal, actual) = (read(AxisSignal::Nominal), read(AxisSignal::Actual));
-        let speed = read(AxisSignal::NominalSpeed);
         if self.path.back() != Some(&nominal) {
             if self.path.len() == POINTS {
                 self.path.pop_front();
@@ -159,14 +169,16 @@ impl Deviation {
     /// The way from the nearest point of the path to a position. What lies before that point is not looked at
     /// again: an axis does not run back.
     fn nearest(&mut self, actual: [f64; 3]) -> Option<[f64; 3]> {
-        let mut best = difference(actual, *self.path.get(self.passed)?);
-        let mut at = self.passed;
-        let ahead = self.path.iter().zip(self.path.iter().skip(1)).enumerate();
-        for (index, (from, to)) in ahead.skip(self.passed) {
-            let across = from_segment(actual, *from, *to);
-            if length(across) < length(best) {
-                (best, at) = (across, index);
+        let mut from = *self.path.get(self.passed)?;
+        let mut best = difference(actual, from);
+        let (mut least, mut at) = (length(best), self.passed);
+        for (index, to) in (self.passed..).zip(self.path.range(self.passed + 1..)) {
+            let across = from_segment(actual, from, *to);
+            let far = length(across);
+            if far < least {
+                (best, least, at) = (across, far, index);
             }
+            from = *to;
         }
         let forgotten = at.saturating_sub(BEFORE);
         self.path.drain(..forgotten);

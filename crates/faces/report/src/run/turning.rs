@@ -38,28 +38,23 @@ impl Turning {
         let state = control.spindle();
         let without_speed = state.programmed_rpm == 0.0 && state.rotation != Rotation::M5;
         let now = Spindle::seen(spindle.rpm, without_speed);
-        let id = ElementId::of(element);
-        match self.seen.back_mut() {
+        match self.seen.back_mut().filter(|(last, _)| last.is_of(element)) {
             // In cycle 2 the spindle brakes on the way to the depth, as it should.
-            Some((last, _)) if *last == id && is_tapping(element) => {}
+            Some(_) if is_tapping(element) => {}
             // What is so at the end of an element counts: until then the spindle may have come to speed.
-            Some((last, then)) if *last == id => *then = now,
-            _ => self.seen.push_back((id, now)),
+            Some((_, then)) => *then = now,
+            None => self.seen.push_back((ElementId::of(element), now)),
         }
     }
 
     /// How it turned on an element that is handed on; on one that was shorter than a cycle as on the one before.
     pub fn take(&mut self, element: &PathElement) -> Option<Spindle> {
-        let id = ElementId::of(element);
-        let found = self
-            .seen
-            .iter()
-            .take(PASSED_OVER)
-            .position(|(seen, _)| *seen == id);
+        let mut first = self.seen.iter().take(PASSED_OVER);
+        let found = first.position(|(seen, _)| seen.is_of(element));
         let passed = self
             .seen
             .iter()
-            .take_while(|(seen, _)| seen.sequence < id.sequence);
+            .take_while(|(seen, _)| seen.sequence < element.sequence);
         let count = found.map_or_else(|| passed.count(), |place| place + 1);
         if let Some((_, spindle)) = self.seen.drain(..count).next_back() {
             self.latest = Some(spindle);

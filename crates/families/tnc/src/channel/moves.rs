@@ -73,8 +73,10 @@ fn move_by_mode(channel: &mut Channel, now: &Now, machine: &mut MachineSide, mea
                 let (run, mut site, _) = channel.parts(machine);
                 run.moves(&mut site, measured);
             }
-            let (run, mut site, _) = channel.parts(machine);
-            run.move_back(&mut site);
+            if channel.run.core.restores() {
+                let (run, mut site, _) = channel.parts(machine);
+                run.move_back(&mut site);
+            }
         }
     }
 }

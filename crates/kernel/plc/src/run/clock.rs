@@ -41,6 +41,10 @@ impl Clock {
     /// running in runs k+1 to k+N (inferred, the figure is lost) [000:11756-11772].
     fn run_timers(&mut self, image: &mut Image, parameters: &ParameterList) {
         let (starts, running) = cells(image, BitArea::T, 2 * TIMERS).split_at_mut(TIMERS);
+        // Most of the time none of them runs.
+        if !any(starts) && !any(running) && self.timers == [0; TIMERS] {
+            return;
+        }
         let timers = (0_u8..).zip(&mut self.timers).zip(starts).zip(running);
         for (((timer, count), start), running) in timers {
             *count = match start {
@@ -56,6 +60,9 @@ impl Clock {
     fn run_counters(&mut self, image: &mut Image, parameters: &ParameterList) {
         let (sets, rest) = cells(image, BitArea::C, 96 + COUNTERS).split_at_mut(48);
         let (running, releases) = rest.split_at_mut(48);
+        if !any(sets) && !any(running) && self.counters == [0; COUNTERS] {
+            return;
+        }
         let counters = (0_u8..)
             .zip(&mut self.counters)
             .zip(sets)
@@ -102,6 +109,11 @@ impl Clock {
 
 fn set(image: &Image, area: BitArea, number: u16) -> bool {
     Bit::new(area, number).is_some_and(|bit| image.bit(bit))
+}
+
+/// Whether any of some cells is set: looked at all at once.
+fn any(cells: &[u8]) -> bool {
+    cells.iter().fold(0, |any, cell| any | cell) != 0
 }
 
 /// The first cells of an area.

@@ -20,6 +20,14 @@ fn rough_axis() -> impl Strategy<Value = String> {
         .prop_map(|(mass, friction, weight, play, noise)| rough(mass, friction, weight, play, noise))
 }
 
+/// The same with limit switches before its ends, which open the chain.
+fn limited(text: &str) -> String {
+    let ends = "travel = [-20, 30]";
+    let switches = format!("{ends}\nlimit_minus = {{ at = -15 }}\nlimit_plus = {{ at = 25 }}");
+    text.replace("pull_in_ms", "limit_switches = true\npull_in_ms")
+        .replace(ends, &switches)
+}
+
 fn course() -> impl Strategy<Value = Vec<(f64, u32)>> {
     prop::collection::vec((-12.0..12.0, 1u32..20_000), 1..20)
 }
@@ -62,7 +70,13 @@ proptest! {
     }
 
     #[test]
-    fn the_same_however_time_is_divided(text in rough_axis(), course in course(), part in 1u32..3000) {
+    fn the_same_however_time_is_divided(
+        text in rough_axis(),
+        course in course(),
+        part in 1u32..3000,
+        limits in any::<bool>(),
+    ) {
+        let text = if limits { limited(&text) } else { text };
         let mut whole = running(&text);
         let mut divided = running(&text);
         for (volts, micros) in course {
@@ -81,6 +95,7 @@ proptest! {
             };
             prop_assert_eq!(bits(&whole), bits(&divided));
             prop_assert_eq!(whole.encoder(0), divided.encoder(0));
+            prop_assert_eq!(whole.control_voltage(), divided.control_voltage());
         }
     }
 
