@@ -8,11 +8,14 @@ use bahn_reader::Reader;
 use bahn_system900::Memory;
 use bahn_text::Files;
 
+/// What reads a program: of its name, its bytes, its channel from 1 on, and the files beside it.
+pub type Open = fn(&str, &[u8], u8, Arc<dyn Files>) -> Box<dyn Reader>;
+
 /// A language of programs that read and write parameters: while a program is read it has all of them, and gives them back.
 #[derive(Clone, Copy, Debug)]
 pub struct Language {
-    /// Reads a program: its name, its bytes, its channel from 1 on, and the files beside it.
-    pub open: fn(&str, &[u8], u8, Arc<dyn Files>) -> Box<dyn Reader>,
+    /// Reads a program.
+    pub open: Open,
     /// Gives a program the parameters; they come back when it is of another language.
     pub give: fn(&mut dyn Reader, Memory) -> Option<Memory>,
     /// Takes them back; `None` when it has none.

@@ -55,7 +55,7 @@ mod units;
 
 pub use channel::Mode;
 pub use control::Control900;
-pub use language::{Language, language};
+pub use language::{Language, Open, language};
 pub use message::{Kind, Message};
 pub use setup::{Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
