@@ -46,6 +46,16 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     if Machine900::is_meant(&options.machine) {
         return system900::command(options);
     }
+    match options.read.first() {
+        Some(name) => Err(UsageError::new(format!(
+            "--read {name}: a parameter of a System 900, and the machine has a TNC"
+        ))),
+        None => on_a_tnc(options),
+    }
+}
+
+/// Runs a program on a machine with a TNC.
+fn on_a_tnc(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
     let mut machine = match machine_folder::load_with_tools(&options.machine, options.run.tools.as_deref())? {
         Ok(machine) => machine,
         Err(faults) => return refused(&faults),
@@ -53,11 +63,6 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     files::keep_inputs(&inputs, &options.written())?;
-    if !options.read.is_empty() {
-        return Err(UsageError::new(
-            "--read takes parameters of a System 900, and the machine has a TNC".to_owned(),
-        ));
-    }
     let mut programs = all_programs(options, &machine)?;
     let (beside, script) = match load_beside(options, &machine)? {
         Ok(found) => found,

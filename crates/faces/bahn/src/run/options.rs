@@ -298,12 +298,9 @@ impl FromStr for SignalName {
             .parse::<Observed>()
             .map_err(|error| format!("--signals {text}: {error}"));
         let name = text.parse::<Name>().ok();
-        match (&observed, name) {
-            (Err(_), None) => text
-                .parse::<Observed>()
-                .map(drop)
-                .map_err(|error| error.to_string())?,
-            _ => {}
+        if name.is_none() {
+            // What is no parameter must be a signal.
+            text.parse::<Observed>().map_err(|error| error.to_string())?;
         }
         Ok(SignalName {
             text: text.to_owned(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use bahn_control900::Control900;
 use bahn_host::{FailedExpectation, Lateness};
 use bahn_parameters::ControlModel;
-use bahn_path::{Axis, BlockRef, Position};
+use bahn_path::{Axis, Position};
 use bahn_system900::{AxisParameter, Memory, Name, slots};
 use serde::Serialize;
 
@@ -246,7 +246,7 @@ fn error(control: &Control900, channel: u8, message: String) -> ErrorReport {
         block: place.block,
         line: place.line,
         detail: String::new(),
-        at: at.unwrap_or(BlockRef::default()),
+        at: at.unwrap_or_default(),
         remedy: None,
     }
 }
