@@ -132,11 +132,15 @@ fn result(report: &Report) -> String {
             } else {
                 format!(" ({})", error.detail)
             };
-            format!(
-                "{} at {}{detail}",
-                error.message,
-                place(&error.program, error.block, error.line, report)
-            )
+            // Nobody knows the line of what no block is to blame for.
+            match error.line {
+                0 => format!("{}{detail}", error.message),
+                line => format!(
+                    "{} at {}{detail}",
+                    error.message,
+                    place(&error.program, error.block, line, report)
+                ),
+            }
         }
         None if report.completed => "completed".to_owned(),
         None => "not completed".to_owned(),

@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use bahn_control900::Control900;
 use bahn_path::{PathElement, PerAxis, Position};
 
-use crate::{Host, Operable};
+use crate::hosted::Prepared;
+use crate::{Host, HostFamily, Operable};
 
 /// Distance that may be left of an element that is done, mm.
 const DONE_MM: f64 = 1e-6;
@@ -61,48 +61,23 @@ impl ExecutedPath {
     }
 
     /// Takes what a cycle has prepared, and looks how far the axes are.
-    pub fn follow<P: Operable>(&mut self, host: &mut Host<P>) {
-        let dropped = host.take_dropped_path(self.channel);
-        let prepared = host.take_path(self.channel);
-        let channel = host.control().channel(self.channel);
-        let now = channel.map(|channel| {
-            let element = channel.element().map(|element| (element, channel.rest_mm()));
-            (element, channel.has_ended())
-        });
-        self.advance(dropped, prepared, now);
-    }
-
-    /// The same of a channel of a System 900.
-    pub fn follow900<P: Operable>(&mut self, host: &mut Host<P, Control900>) {
-        let number = self.channel as u8 + 1;
-        let dropped = host.now.control.take_dropped_path(number);
-        let prepared = host.now.control.take_path(number);
-        let control = &host.now.control;
-        let (_, has_ended) = control.run(number);
-        self.advance(dropped, prepared, Some((control.executed(number), has_ended)));
-    }
-
-    /// What was prepared, from which sequence on what came before is not executed, and what is executed now: the element with
-    /// the distance that is left of it, and whether the program has ended.
-    fn advance(
-        &mut self,
-        dropped: Option<u64>,
-        prepared: Vec<PathElement>,
-        now: Option<(Option<(&PathElement, f64)>, bool)>,
-    ) {
+    pub fn follow<P: Operable, C: HostFamily>(&mut self, host: &mut Host<P, C>) {
+        let Prepared { dropped, elements } = host.take_prepared(self.channel);
         if let Some(dropped) = dropped {
             self.ahead.retain(|element| element.sequence < dropped);
         }
-        self.ahead.extend(prepared);
-        let Some((current, has_ended)) = now else { return };
-        if let Some((element, rest_mm)) = current {
+        self.ahead.extend(elements);
+        let Some(now) = host.control().executes(self.channel) else {
+            return;
+        };
+        if let Some((element, rest_mm)) = now.element {
             match &mut self.last_seen {
                 // Most cycles go on in the element of the one before.
                 Some((seen, rest)) if seen.is_of(element) => *rest = rest_mm,
                 seen => *seen = Some((ElementId::of(element), rest_mm)),
             }
         }
-        self.done = match (has_ended, current, &self.last_seen) {
+        self.done = match (now.has_ended, now.element, &self.last_seen) {
             (true, ..) => self.ahead.len(),
             (false, Some(_), Some((current, _))) => self.before(current),
             (false, ..) => 0,

@@ -8,13 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bahn_machine::Machine;
+use bahn_reader::Warning;
 use bahn_tnc::Control;
 
 use crate::action::{Action, Answer, Source};
 use crate::error::HostError;
 use crate::feed::Reader;
 use crate::feeds::Feeds;
-use crate::hosted::{HostNotice, Hosted};
+use crate::hosted::{HostNotice, Hosted, Prepared};
 use crate::journal::{Given, Journal};
 use crate::log::Sink;
 use crate::moment::Moment;
@@ -66,9 +67,6 @@ pub trait HostFamily: Hosted {
 
     /// Another moment has taken the place of the present one, and what followed is repeated.
     fn begin_again<P: Operable>(_host: &mut Host<P, Self>) {}
-
-    /// What the repetition of a cycle has left for those who follow, and they have already.
-    fn pass_over<P: Operable>(_host: &mut Host<P, Self>) {}
 
     /// Stores everything.
     ///
@@ -307,6 +305,29 @@ impl<P: Operable, C: HostFamily> Host<P, C> {
     pub(crate) fn reset_clock(&mut self) {
         self.set_clock(self.pacing.clock());
         self.feeds.reset(self.now.control.time_us());
+    }
+
+    /// Keeps the path elements of programs of all channels that begin from now on, for [`Host::take_prepared`].
+    pub fn keep_path(&mut self) {
+        self.now.control.keep_path();
+    }
+
+    /// What a channel, from 0, has prepared of its path since the last call.
+    pub fn take_prepared(&mut self, channel: usize) -> Prepared {
+        self.now.control.take_prepared(channel)
+    }
+
+    /// What is to be said of the program of a channel, from 0, since the last call, and ends no run.
+    pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
+        self.now.control.take_warnings(channel)
+    }
+
+    /// What nobody follows is of no use to anybody.
+    pub fn drop_path(&mut self) {
+        for channel in 0..self.now.control.channels() {
+            drop(self.take_prepared(channel));
+            drop(self.take_warnings(channel));
+        }
     }
 
     /// How well the pace of the wall was kept; `None` where the machine runs freely.

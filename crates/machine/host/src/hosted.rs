@@ -2,6 +2,9 @@
 
 use std::fmt::{Debug, Display};
 
+use bahn_path::PathElement;
+use bahn_reader::Warning;
+
 use crate::action::{Action, Answer, Source};
 
 /// A control that a host drives, as what of it the parts of a host need to know.
@@ -25,6 +28,21 @@ pub trait Hosted: Clone + Sized {
 
     /// Time since power-on, µs.
     fn time_us(&self) -> u64;
+
+    /// How many channels there are.
+    fn channels(&self) -> usize;
+
+    /// Keeps the path elements of programs that begin from now on, for [`Hosted::take_prepared`].
+    fn keep_path(&mut self);
+
+    /// What a channel, from 0, has prepared of its path since the last call.
+    fn take_prepared(&mut self, channel: usize) -> Prepared;
+
+    /// How far a channel, from 0, is on its path; `None` where there is no such channel.
+    fn executes(&self, channel: usize) -> Option<Executes<'_>>;
+
+    /// What is to be said of the program of a channel, from 0, since the last call, and ends no run.
+    fn take_warnings(&mut self, channel: usize) -> Vec<Warning>;
 
     /// What belongs to the moment of power-on beside the control.
     fn aside(&self) -> Self::Aside;
@@ -52,6 +70,24 @@ pub type ByOperator<C> = (
     Action<<C as Hosted>::Command>,
     Option<<C as Hosted>::Notice>,
 );
+
+/// What a channel has prepared of its path.
+#[derive(Clone, Debug, Default)]
+pub struct Prepared {
+    /// Of what was taken before, the elements from this sequence on are not executed: the tool is replaced before them.
+    pub dropped: Option<u64>,
+    /// New elements, in workpiece coordinates.
+    pub elements: Vec<PathElement>,
+}
+
+/// How far a channel is on its path.
+#[derive(Clone, Copy, Debug)]
+pub struct Executes<'a> {
+    /// The element that is executed, with the distance that is left of it, mm.
+    pub element: Option<(&'a PathElement, f64)>,
+    /// The program has come to its end.
+    pub has_ended: bool,
+}
 
 /// What a host tells of every control.
 #[derive(Clone, Debug, PartialEq)]

@@ -106,7 +106,7 @@ pub use executed_path::{ElementId, ExecutedPath};
 pub use expectation::{Expectation, Presence, Relation, Run, Tested, run_name};
 pub use feed::{Next, Reader};
 pub use host::{Host, HostFamily};
-pub use hosted::{HostNotice, Hosted};
+pub use hosted::{Executes, HostNotice, Hosted, Prepared};
 pub use log::{Log, LogFile, Sink, is_whole};
 pub use machine_folder::{FolderPrograms, Found, LoadedChannel, LoadedMachine, State, tools_fit};
 pub use machine_folder::{read_remembered, write_remembered};

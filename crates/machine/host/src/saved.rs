@@ -162,7 +162,8 @@ impl<P: Operable, C: HostFamily> Host<P, C> {
             if let Err(error) = self.step() {
                 break Err(error);
             }
-            C::pass_over(self);
+            // Whoever follows the path has it already.
+            self.drop_path();
         };
         self.repeats = false;
         self.reset_clock();

@@ -50,7 +50,7 @@ fn ends(host: &mut Host) -> Vec<[u64; 2]> {
     let mut ends = Vec::new();
     let axes = [bahn_path::Axis::X, bahn_path::Axis::Y];
     until(host, |host| {
-        let path = host.take_path(0).into_iter();
+        let path = host.take_prepared(0).elements.into_iter();
         ends.extend(path.map(|element| axes.map(|axis| element.end[axis].to_bits())));
         host.control().has_ended()
     });

@@ -10,7 +10,8 @@ use crate::memory::{Memory, Place};
 use crate::numbers::FUNCTION;
 
 impl Memory {
-    /// The parameters that differ from others, a line each; that of functions is none that lasts.
+    /// The parameters that differ from others, a line each; that of functions is none that lasts, and those that
+    /// each channel has of an axis are states, which the control shows anew.
     ///
     /// ```
     /// use bahn_system900::DataFile;

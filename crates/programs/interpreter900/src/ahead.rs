@@ -13,7 +13,7 @@ use bahn_path::{Axis, Curve, FeedRate, PathElement, Position};
 use bahn_system900::PathData;
 
 use crate::feeds::circle_limit;
-use crate::item::Item;
+use crate::item::{Item, WAITING_MAX};
 
 const MAIN: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 /// P8851 = -1.
@@ -102,9 +102,6 @@ pub(crate) struct Ahead {
     after: Vec<Item>,
 }
 
-/// Holds that may wait for the next movement (inferred).
-const AFTER_MAX: usize = 500;
-
 impl Ahead {
     pub fn holds(&self) -> bool {
         self.held.is_some()
@@ -124,7 +121,7 @@ impl Ahead {
             }
             item if self.held.is_some() => {
                 self.after.push(item);
-                if self.after.len() > AFTER_MAX {
+                if self.after.len() > WAITING_MAX {
                     self.flush(out);
                 }
             }

@@ -8,6 +8,7 @@ use bahn_path::{Curve, PathElement, Point2};
 use bahn_system900::PathData;
 
 use crate::correction::Move;
+use crate::item::WAITING_MAX;
 use crate::refusal::{Refusal, wrong};
 
 /// What is put into a corner, mm.
@@ -45,9 +46,6 @@ struct Held {
     after: Vec<Move>,
 }
 
-/// Holds that may wait for the movement after the corner (inferred).
-const AFTER_MAX: usize = 500;
-
 impl Corners {
     pub fn holds(&self) -> bool {
         self.held.is_some()
@@ -61,7 +59,7 @@ impl Corners {
         next: &mut dyn FnMut(Move) -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
         if let Some(mut held) = self.held.take() {
-            if item.element.curve == Curve::Hold && held.after.len() < AFTER_MAX {
+            if item.element.curve == Curve::Hold && held.after.len() < WAITING_MAX {
                 held.after.push(item);
                 self.held = Some(held);
                 return Ok(());

@@ -17,11 +17,8 @@ use bahn_path::parallel::{Ending, Joint, Round, Side, joint, meeting, turn_deg, 
 use bahn_path::{Curve, PathElement, Plane, Point2};
 
 use crate::correction_rules::{Arcs, CorrectionRules};
-use crate::item::Item;
+use crate::item::{Item, WAITING_MAX};
 use crate::refusal::{Refusal, wrong};
-
-/// Movements beside the plane that may wait after an element; when more come, it ends beside its last point (inferred).
-const AFTER_MAX: usize = 500;
 
 /// A movement on the programmed contour.
 #[derive(Clone, Debug)]
@@ -123,7 +120,7 @@ impl Correction {
             }
         };
         waiting.push(item);
-        match waiting.len() > AFTER_MAX {
+        match waiting.len() > WAITING_MAX {
             true => self.flush(rules, out),
             false => Ok(()),
         }

@@ -128,11 +128,47 @@ fn without_an_operator_the_script_does_all() {
     let folder = portal();
     let script = "0.5: P8683=2\n+0.5: P8682=2\n+0.5: expect P8685=2, 2:P8685=0\n+0.1: P8705=1\n+0.2: expect P8685=0\n+0: end\n";
     let (code, report, errors) = with_script(&folder, script, "--operator absent");
+    // What was expected came, but the program did not come to its end.
     assert_eq!(
         (code, &report["failed_expectations"]),
-        (0, &json!([])),
+        (1, &json!([])),
         "{errors}"
     );
+    assert_eq!(report["completed"], json!(false));
+    assert!(errors.contains("the program was broken off"), "{errors}");
+}
+
+/// A program that is not there is no program that has run.
+#[test]
+fn a_missing_program_is_said() {
+    let folder = portal();
+    std::fs::remove_file(folder.path("portal/programs/P2000.900")).unwrap();
+    let run = folder.bahn("run --machine portal --fresh");
+    assert_eq!(run.code(), 1, "{}", run.out());
+    assert!(run.err().contains("P2000.900"), "{}", run.err());
+    // Two files with one number would be one program in both channels.
+    for name in ["a", "b"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+        folder.write(&format!("{name}/P7.900"), "N10 M30\n");
+    }
+    let run = folder.bahn("run a/P7.900 b/P7.900 --machine portal --fresh");
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("have the same number, 7"), "{}", run.err());
+}
+
+/// P8801 of an earlier run does not let a program that is named begin in its middle. From block 300 on the tool is changed and four
+/// holes are drilled, 14 mm each.
+#[test]
+fn a_named_program_begins_at_its_beginning() {
+    let folder = portal();
+    let feed_mm = |more: &str| {
+        let run = folder.bahn(&format!("run P1000.900 --machine portal --format json {more}"));
+        assert_eq!(run.code(), 0, "{more}: {}", run.err());
+        run.json()["path_mm"]["feed"].as_f64().unwrap()
+    };
+    let whole = feed_mm("--fresh");
+    assert_eq!(feed_mm("--start-block 300"), 4.0 * 14.0);
+    assert_eq!(feed_mm(""), whole);
 }
 
 /// A row for every 100 ms, not rounded; the heading has name and unit.

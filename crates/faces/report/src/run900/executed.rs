@@ -35,8 +35,8 @@ impl Executed {
         if host.control().is_on_its_way(self.channel) {
             self.program_us += u64::from(host.control().cycle_us());
         }
-        self.path.follow900(host);
-        for warning in host.take_warnings(self.channel) {
+        self.path.follow(host);
+        for warning in host.take_warnings(usize::from(self.channel) - 1) {
             let notice = Notice::Program(warning.kind);
             self.record.warn(warning.block, notice, warning.count);
         }

@@ -219,15 +219,15 @@ fn display(control: &Control900, channel: u8) -> Position {
 
 /// What broke the run off.
 fn failure(session: &Session900, ended: &Ended900) -> Option<(u8, Box<ErrorReport>)> {
+    let open = session.first_open().unwrap_or(1);
     let (channel, message) = match ended {
-        Ended900::Completed => return None,
-        Ended900::Interrupted => return None,
-        Ended900::Stopped => (1, "the script ended the run".to_owned()),
-        Ended900::TooLong => (1, "the run takes longer than --max-time".to_owned()),
+        Ended900::Completed | Ended900::Interrupted => return None,
+        Ended900::Stopped => (open, "the script ended the run".to_owned()),
+        Ended900::TooLong => (open, "the run takes longer than --max-time".to_owned()),
         Ended900::Broken(message) => (message.channel, message.to_string()),
         Ended900::BrokenOff(channel) => (*channel, "the program was broken off".to_owned()),
-        Ended900::Hangs(what) => (1, format!("nothing moves: {what}")),
-        Ended900::Failed(what) => (1, what.clone()),
+        Ended900::Hangs(what) => (open, format!("nothing moves: {what}")),
+        Ended900::Failed(what) => (open, what.clone()),
     };
     Some((channel, Box::new(error(session.host.control(), channel, message))))
 }

@@ -200,14 +200,18 @@ impl Session900 {
         {
             return Ended900::Broken(message.clone());
         }
-        let control = self.host.control();
-        let mut started = (1u8..).zip(&self.started).filter(|(_, started)| **started);
-        let broken = started.find(|(channel, _)| !control.run(*channel).1);
-        // What a script breaks off is as it wants it.
-        match broken.filter(|_| self.play.script().lines.is_empty()) {
-            Some((channel, _)) => Ended900::BrokenOff(channel),
+        match self.first_open() {
+            Some(channel) => Ended900::BrokenOff(channel),
             None => Ended900::Completed,
         }
+    }
+
+    /// The first channel, from 1, whose program was started and has not come to its end.
+    pub(super) fn first_open(&self) -> Option<u8> {
+        let control = self.host.control();
+        let mut started = (1u8..).zip(&self.started).filter(|(_, started)| **started);
+        let open = started.find(|(channel, _)| !control.run(*channel).1);
+        open.map(|(channel, _)| channel)
     }
 
     /// Whether the run is at its end.

@@ -281,30 +281,19 @@ fn areas_compare_parameters() {
     let mut rig = Rig::on(
         "q2105: 1\nq2106: 60\nq2107: 61\nq2108: 10\nq2109: -10\nq2100: 1\nq2101: -2152\nq2102: 61\nq2104: 20\n",
     );
-    for (reference, control, second) in [
-        ("5", "12", 0x100),
-        ("5", "5", 0x1_0101),
-        ("5", "-1", 0x1_0000),
-        ("5", "30", 0),
+    // Within area 1 from 0 to 20, byte 3 of P12188; below, within, above area 2, bytes 1 to 3 of P12189. Where both are equal they
+    // are within both ranges.
+    for (reference, control, first, second) in [
+        ("5", "12", 0x1_0000, 0x100),
+        ("5", "5", 0x1_0000, 0x1_0101),
+        ("5", "-1", 0, 0x1_0000),
+        ("5", "30", 0, 0),
     ] {
         rig.plc("P60", reference);
         rig.plc("P61", control);
         rig.seconds(0.05);
-        let first = rig.read("P12188");
-        let is_within = matches!(control, "12" | "5");
-        assert_eq!(first, f64::from(u32::from(is_within) << 16), "{control}");
-        let bytes = rig.read("P12189") as i32;
-        // Where both are equal they are within both ranges.
-        let expected = if control == "5" {
-            bytes & 1 | 0x1_0100
-        } else {
-            second
-        };
-        assert_eq!(
-            (bytes, bytes & 1),
-            (expected, i32::from(control == "5")),
-            "{control}"
-        );
+        let bytes = ["P12188", "P12189"].map(|name| rig.read(name) as i32);
+        assert_eq!(bytes, [first, second], "{control}");
     }
 }
 

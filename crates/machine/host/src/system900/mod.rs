@@ -27,6 +27,7 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use bahn_control900::{Control900, Setup};
+use bahn_reader::Warning;
 use bahn_system900::{ChannelParameter, Memory, SpaceError, Value};
 
 use self::notice::Before900;
@@ -34,7 +35,7 @@ use crate::action::Answer;
 use crate::any_plant::AnyPlant;
 use crate::error::HostError;
 use crate::host::{Host, HostFamily};
-use crate::hosted::{ByOperator, HostNotice, Hosted};
+use crate::hosted::{ByOperator, Executes, HostNotice, Hosted, Prepared};
 use crate::moment::Moment;
 use crate::operable::Operable;
 
@@ -84,7 +85,8 @@ impl PowerOn900 {
         })
     }
 
-    /// The files are the programs of the channels in their order: their numbers are in P8800. Other channels run none.
+    /// The files are the programs of the channels in their order, from their beginning: their numbers are in P8800. Other
+    /// channels run none.
     ///
     /// # Errors
     /// In words, when there is none of a name, or no number in it, or there are more files than channels.
@@ -102,6 +104,7 @@ impl PowerOn900 {
         for channel in 1..=channels {
             let number = files.next().map_or(Ok(0), |file| self.programs.add(file))?;
             self.set(channel, ChannelParameter::Program, number)?;
+            self.set(channel, ChannelParameter::StartBlock, 0)?;
         }
         Ok(())
     }
@@ -140,19 +143,7 @@ impl<P: Operable> Host<P, Control900> {
     pub fn of_system900(power_on: PowerOn900, plant: P, operator: Operator900) -> Host<P, Control900> {
         let control = Control900::new(power_on.memory, power_on.setup);
         let moment = Moment::new(control, plant, operator);
-        let mut host = Host::switched_on(moment, power_on.programs, power_on.state);
-        host.take_programs();
-        host
-    }
-
-    /// Keeps the path elements of programs that begin from now on, for whoever follows them.
-    pub fn keep_path(&mut self) {
-        self.now.control.keep_path();
-    }
-
-    /// What is to be said of the program of a channel, from 1 on, since the last call, and ends no run.
-    pub fn take_warnings(&mut self, channel: u8) -> Vec<bahn_reader::Warning> {
-        self.now.control.take_warnings(channel)
+        Host::switched_on(moment, power_on.programs, power_on.state)
     }
 
     /// The file of the program of a channel, from 1 on, as it was read last.
@@ -211,6 +202,11 @@ impl<P: Operable> Host<P, Control900> {
     }
 }
 
+/// The number of a channel that a host counts from 0.
+fn number(channel: usize) -> u8 {
+    u8::try_from(channel + 1).unwrap_or(u8::MAX)
+}
+
 /// The number of a program of a channel: P8800, P8820, P8822, P8824, P8826.
 fn number_of(memory: &Memory, channel: u8, which: usize) -> Option<i64> {
     let (parameter, after) = match which.checked_sub(1) {
@@ -237,10 +233,37 @@ impl Hosted for Control900 {
         self.now_us()
     }
 
+    fn channels(&self) -> usize {
+        usize::from(Control900::channels(self))
+    }
+
+    fn keep_path(&mut self) {
+        Control900::keep_path(self);
+    }
+
+    fn take_prepared(&mut self, channel: usize) -> Prepared {
+        Prepared {
+            dropped: self.take_dropped_path(number(channel)),
+            elements: self.take_path(number(channel)),
+        }
+    }
+
+    fn executes(&self, channel: usize) -> Option<Executes<'_>> {
+        let (_, has_ended) = self.run(number(channel));
+        Some(Executes {
+            element: self.executed(number(channel)),
+            has_ended,
+        })
+    }
+
+    fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
+        Control900::take_warnings(self, number(channel))
+    }
+
     fn aside(&self) -> Aside900 {
         Aside900 {
             before: Before900::default(),
-            programs: vec![[None; PROGRAMS]; usize::from(self.channels())],
+            programs: vec![[None; PROGRAMS]; Hosted::channels(self)],
         }
     }
 

@@ -53,6 +53,17 @@ impl Programs900 {
                 found.display()
             )
         })?;
+        let same = self
+            .named
+            .iter()
+            .find(|(of, path)| *of == number && *path != found);
+        if let Some((_, other)) = same {
+            return Err(format!(
+                "{} and {} have the same number, {number}",
+                other.display(),
+                found.display()
+            ));
+        }
         self.named.push((number, found));
         Ok(number)
     }

@@ -13,10 +13,9 @@ mod setup;
 
 use std::sync::Arc;
 
-use bahn_interpreter::Warning;
 use bahn_machine::Event;
-use bahn_path::PathElement;
 use bahn_plc::{Tracer, WindowView};
+use bahn_reader::Warning;
 use bahn_tnc::{Command, Control, Dnc, KeyCode, Programs, Renewed, ServoSampler, Snapshot};
 
 use self::background::Background;
@@ -25,7 +24,7 @@ use self::setup::control_of;
 use crate::action::{Action, Answer};
 use crate::error::HostError;
 use crate::host::{Host, HostFamily};
-use crate::hosted::{ByOperator, HostNotice, Hosted};
+use crate::hosted::{ByOperator, Executes, HostNotice, Hosted, Prepared};
 use crate::journal::Journal;
 use crate::machine_folder::{LoadedMachine, State};
 use crate::moment::Moment;
@@ -104,6 +103,34 @@ impl Hosted for Control {
         Control::time_us(self)
     }
 
+    fn channels(&self) -> usize {
+        Control::channels(self)
+    }
+
+    fn keep_path(&mut self) {
+        Control::keep_path(self, true);
+    }
+
+    fn take_prepared(&mut self, channel: usize) -> Prepared {
+        // What is dropped is asked for first.
+        Prepared {
+            dropped: self.take_dropped_path(channel),
+            elements: self.take_path(channel),
+        }
+    }
+
+    fn executes(&self, channel: usize) -> Option<Executes<'_>> {
+        let channel = self.channel(channel)?;
+        Some(Executes {
+            element: channel.element().map(|element| (element, channel.rest_mm())),
+            has_ended: channel.has_ended(),
+        })
+    }
+
+    fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
+        Control::take_warnings(self, channel)
+    }
+
     fn aside(&self) -> Aside {
         Aside {
             before: Before::default(),
@@ -178,13 +205,6 @@ impl HostFamily for Control {
         host.now.control.read_beside(false);
         // A computation that is on its way belongs to the control that is left.
         host.beside.background = Background::default();
-    }
-
-    fn pass_over<P: Operable>(host: &mut Host<P>) {
-        for channel in 0..host.control().channels() {
-            drop((host.take_dropped_path(channel), host.take_path(channel)));
-            drop(host.take_warnings(channel));
-        }
     }
 
     fn store<P: Operable>(host: &mut Host<P>) -> Result<(), HostError> {
@@ -438,25 +458,5 @@ impl<P: Operable> Host<P> {
     /// [`Control::interpreter`]. A cycle then waits for what is read beside.
     pub fn watch_programs(&mut self) {
         self.beside.looks.programs = true;
-    }
-
-    /// Keeps the path elements of runs of all channels that begin from now on, for [`Host::take_path`].
-    pub fn keep_path(&mut self) {
-        self.now.control.keep_path(true);
-    }
-
-    /// The path elements of a channel that were prepared since the last call, in workpiece coordinates.
-    pub fn take_path(&mut self, channel: usize) -> Vec<PathElement> {
-        self.now.control.take_path(channel)
-    }
-
-    /// The first element that is executed no more, of those that were taken: see [`Control::take_dropped_path`].
-    pub fn take_dropped_path(&mut self, channel: usize) -> Option<u64> {
-        self.now.control.take_dropped_path(channel)
-    }
-
-    /// The warnings of a channel's interpreter since the last call.
-    pub fn take_warnings(&mut self, channel: usize) -> Vec<Warning> {
-        self.now.control.take_warnings(channel)
     }
 }

@@ -137,7 +137,7 @@ impl Bench {
 
     fn take_path(&mut self) {
         for (channel, contour) in self.contours.iter_mut().enumerate() {
-            for element in self.host.take_path(channel) {
+            for element in self.host.take_prepared(channel).elements {
                 contour.add(element);
             }
         }
@@ -148,14 +148,6 @@ impl Bench {
             if let Some(channel) = self.host.control().channel(number) {
                 led.learn(&channel, self.host.plant());
             }
-        }
-    }
-
-    /// What was prepared in a trial is of no use to anybody.
-    pub fn drop_path(&mut self) {
-        for channel in 0..self.contours.len() {
-            drop((self.host.take_dropped_path(channel), self.host.take_path(channel)));
-            drop(self.host.take_warnings(channel));
         }
     }
 

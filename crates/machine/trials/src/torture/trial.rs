@@ -247,7 +247,7 @@ impl Course<'_> {
         }
         self.cycles += 1;
         if self.cycles.is_multiple_of(64) {
-            self.bench.drop_path();
+            self.bench.host.drop_path();
         }
         self.listen()?;
         let control = self.bench.host.control();
