@@ -115,14 +115,25 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// All faults of the script.
     pub fn script(&self, path: &Path, bytes: &[u8]) -> Result<Script, Vec<Diagnostic>> {
-        let mut known = self.known();
-        let times = Times::of_cycle(self.cycle_us).up_to(SECONDS_MAX);
-        let (script, faults) = Script::read(path, &decode(bytes), times, &mut known);
-        if faults.is_empty() {
-            Ok(script)
-        } else {
-            Err(faults)
-        }
+        read(path, bytes, self.cycle_us, &mut self.known())
+    }
+}
+
+/// Reads a script for a machine with whatever verbs its family has.
+///
+/// # Errors
+/// All faults of the script.
+pub(crate) fn read<V: Verbs>(
+    path: &Path,
+    bytes: &[u8],
+    cycle_us: u32,
+    verbs: &mut V,
+) -> Result<bahn_script::Script<V::Action, V::Condition>, Vec<Diagnostic>> {
+    let times = Times::of_cycle(cycle_us).up_to(SECONDS_MAX);
+    let (script, faults) = bahn_script::Script::read(path, &decode(bytes), times, verbs);
+    match faults.is_empty() {
+        true => Ok(script),
+        false => Err(faults),
     }
 }
 

@@ -2,19 +2,11 @@
 
 use serde_json::json;
 
-use crate::support::{Folder, copy};
-
-/// A folder with the shipped portal in it.
-fn portal() -> Folder {
-    let folder = Folder::new();
-    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
-    copy(&shipped, &folder.path("portal"));
-    folder
-}
+use crate::support::Folder;
 
 #[test]
 fn the_portal_is_fine() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let run = folder.bahn("machine check portal --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     let report = run.json();
@@ -34,7 +26,7 @@ fn the_portal_is_fine() {
 /// drills four holes of 14 mm with 600.
 #[test]
 fn a_program_runs_in_its_channel() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let run = folder.bahn("test portal/programs/P1000.900 --machine portal --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     let report = run.json();
@@ -68,7 +60,7 @@ fn a_program_runs_in_its_channel() {
 
 #[test]
 fn faults_have_their_place() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     folder.write(
         "P1000.900",
         "{ part }\nN10 G54 G1 X5 F100\nN20 G3 X0 Y10.1 I-5 J0\nN30 M30\n",
@@ -106,7 +98,7 @@ fn faults_have_their_place() {
 /// A plant file is checked with the folder, and so is what answers in the place of a PLC.
 #[test]
 fn a_wrong_plant_is_a_fault_of_the_folder() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let described = folder.read("portal/machine.toml");
     folder.write(
         "portal/machine.toml",
@@ -129,7 +121,7 @@ fn a_wrong_plant_is_a_fault_of_the_folder() {
 /// All that takes the folder of a TNC says why it does not take this one.
 #[test]
 fn what_is_for_a_tnc_says_so() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     for command in ["panel --machine portal", "torture --machine portal"] {
         let run = folder.bahn(command);
         assert!(run.code() == 1 || run.code() == 2, "{command}: {}", run.code());
@@ -139,7 +131,7 @@ fn what_is_for_a_tnc_says_so() {
 
 #[test]
 fn wrong_folders_have_all_their_faults() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let toml = "name = 'p'\ncontrol = 'system900'\nparameters = 'wrong.q'\nbeam = 2\n";
     folder.write("portal/machine.toml", toml);
     folder.write("portal/wrong.q", "q2: 9\n");

@@ -2,15 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, copy};
-
-/// A folder with the shipped portal in it.
-fn portal() -> Folder {
-    let folder = Folder::new();
-    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
-    copy(&shipped, &folder.path("portal"));
-    folder
-}
+use crate::support::Folder;
 
 /// What a run with a script came to.
 fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String) {
@@ -27,7 +19,7 @@ fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String
 /// four quarters, a whole turn.
 #[test]
 fn both_heads_run_their_programs() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let run = folder.bahn("run --machine portal --fresh --read P8685,2:P8685,P12151,P12157 --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     let report = run.json();
@@ -75,7 +67,7 @@ fn both_heads_run_their_programs() {
 /// A file runs in channel 1 alone; its path is drawn.
 #[test]
 fn a_named_program_runs_alone() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let run = folder.bahn("run P2000.900 --machine portal --fresh --path p.csv --format json");
     // Channel 1 has no tool 11.
     assert_eq!(run.code(), 1, "{}", run.out());
@@ -89,7 +81,7 @@ fn a_named_program_runs_alone() {
 /// A drive that gives nothing any more leaves its axis behind: M2001 of logical axis 3 breaks the program off.
 #[test]
 fn a_dead_drive_is_a_lag_error() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let (code, report, errors) = with_script(&folder, "start+3: fault drive 1 dead\n", "");
     assert_eq!(code, 1, "{report}");
     let said = &report["messages"][0];
@@ -109,7 +101,7 @@ fn a_dead_drive_is_a_lag_error() {
 /// STOP of one channel stops the network, q904; START goes on.
 #[test]
 fn stop_in_the_network() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let script = "start+2: P8682=1\n+1: expect P8685=1, 2:P8685=1\n+0: P8682=2, 2:P8682=2\n+1: expect P8685=2, 2:P8685=2\n";
     let (code, report, errors) = with_script(&folder, script, "");
     assert_eq!(
@@ -125,7 +117,7 @@ fn stop_in_the_network() {
 /// The script is the PLC and the operator: without a start nothing runs.
 #[test]
 fn without_an_operator_the_script_does_all() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let script = "0.5: P8683=2\n+0.5: P8682=2\n+0.5: expect P8685=2, 2:P8685=0\n+0.1: P8705=1\n+0.2: expect P8685=0\n+0: end\n";
     let (code, report, errors) = with_script(&folder, script, "--operator absent");
     // What was expected came, but the program did not come to its end.
@@ -141,7 +133,7 @@ fn without_an_operator_the_script_does_all() {
 /// A program that is not there is no program that has run.
 #[test]
 fn a_missing_program_is_said() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     std::fs::remove_file(folder.path("portal/programs/P2000.900")).unwrap();
     let run = folder.bahn("run --machine portal --fresh");
     assert_eq!(run.code(), 1, "{}", run.out());
@@ -160,7 +152,7 @@ fn a_missing_program_is_said() {
 /// holes are drilled, 14 mm each.
 #[test]
 fn a_named_program_begins_at_its_beginning() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let feed_mm = |more: &str| {
         let run = folder.bahn(&format!("run P1000.900 --machine portal --format json {more}"));
         assert_eq!(run.code(), 0, "{more}: {}", run.err());
@@ -174,7 +166,7 @@ fn a_named_program_begins_at_its_beginning() {
 /// A row for every 100 ms, not rounded; the heading has name and unit.
 #[test]
 fn parameters_are_recorded() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let run = folder.bahn(
         "run P1000.900 --machine portal --fresh --record r.csv --signals P12151,P8685,q2150 --every 100 --format json",
     );
@@ -191,7 +183,7 @@ fn parameters_are_recorded() {
 /// All parameters survive power-off; --fresh begins with the data file.
 #[test]
 fn parameters_survive_power_off() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     folder.write("set.txt", "0.1: P510=2.5\n0.2: end\n");
     let run = folder.bahn("run --machine portal --script set.txt --operator absent --format json");
     assert_eq!(run.json()["reads"], json!({}));
@@ -217,7 +209,7 @@ fn parameters_survive_power_off() {
 /// A log repeats the run: the same report.
 #[test]
 fn a_log_repeats_the_run() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     let first = folder
         .bahn("run P1000.900 --machine portal --fresh --log run.log --format json")
         .json();
@@ -231,7 +223,7 @@ fn a_log_repeats_the_run() {
 /// What means something to a TNC alone is refused; so is what a script does not know.
 #[test]
 fn wrong_use_is_refused() {
-    let folder = portal();
+    let folder = Folder::with_portal();
     for option in ["--mp 7310=0", "--image p.png", "--override 50", "--strict"] {
         let run = folder.bahn(&format!("run --machine portal --fresh {option}"));
         assert_eq!(run.code(), 2, "{option}");

@@ -94,6 +94,13 @@ impl Folder {
         folder
     }
 
+    /// With the shipped portal with a System 900 in it.
+    pub fn with_portal() -> Folder {
+        let folder = Folder::new();
+        copy(&machines().join("portal900"), &folder.path("portal"));
+        folder
+    }
+
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use bahn_control900::{Control900, cycle_us};
 use bahn_exchange::parts;
-use bahn_script::{Fault, Script, Times, Verbs};
+use bahn_script::{Fault, Script, Verbs};
 use bahn_system900::{Memory, Name, Value};
-use bahn_text::{Diagnostic, decode};
+use bahn_text::Diagnostic;
 
 use super::command::Command900;
 use crate::action::{Action, Answer, Source};
@@ -17,10 +17,8 @@ use crate::expectation::{Presence, Relation, quoted};
 use crate::host::Host;
 use crate::operable::Operable;
 use crate::play::{Play, Scripted};
+use crate::script::read;
 use bahn_machine::Event;
-
-/// The last second that a script may speak of: eleven days.
-const SECONDS_MAX: f64 = 1e6;
 
 /// A script for a machine with a System 900.
 pub type Script900 = Script<Action900, Expectation900>;
@@ -157,13 +155,7 @@ impl<'a> Stage900<'a> {
             memory: self.memory,
             tried: self.plant.copied(),
         };
-        let times = Times::of_cycle(cycle_us(self.memory)).up_to(SECONDS_MAX);
-        let (script, faults) = Script::read(path, &decode(bytes), times, &mut known);
-        if faults.is_empty() {
-            Ok(script)
-        } else {
-            Err(faults)
-        }
+        read(path, bytes, cycle_us(self.memory), &mut known)
     }
 }
 
