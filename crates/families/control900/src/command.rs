@@ -11,6 +11,7 @@ use bahn_system900::{
 use crate::answers::bit;
 use crate::channel::{Channel, Mode};
 use crate::machine::Machine;
+use crate::message::Kind;
 use crate::{hand, monitor, positions};
 
 /// Values of P8682 [002:3613-3619].
@@ -195,17 +196,22 @@ fn release(machine: &mut Machine, number: u8) {
 }
 
 /// P8710 to P8713: an emergency program interrupts what runs; the mode is AUTO, sequence, from then on [002:3856-3882].
+///
+/// Decision: An emergency program of a System 900 that is not there breaks off what runs: who calls it wants something else to happen
 fn call(machine: &mut Machine, number: u8, which: usize) {
     let k = usize::from(number) - 1;
     let is_there = |channel: &Channel| channel.emergency.get(which).is_some_and(Option::is_some);
-    if machine.channels.get(k).is_some_and(is_there) {
-        machine
-            .memory
-            .set_channel(number, ChannelParameter::ModeRequest, Mode::Sequence.number());
-        take_mode(machine, number, Mode::Sequence.number());
-        if let Some(channel) = machine.channels.get_mut(k) {
-            channel.called = Some(which);
-        }
+    if !machine.channels.get(k).is_some_and(is_there) {
+        let text = format!("emergency program {} is not there", which + 1);
+        machine.say(0, number, None, Kind::High, text.into());
+        return;
+    }
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::ModeRequest, Mode::Sequence.number());
+    take_mode(machine, number, Mode::Sequence.number());
+    if let Some(channel) = machine.channels.get_mut(k) {
+        channel.called = Some(which);
     }
 }
 

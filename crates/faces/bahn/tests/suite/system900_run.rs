@@ -148,6 +148,26 @@ fn a_missing_program_is_said() {
     assert!(run.err().contains("have the same number, 7"), "{}", run.err());
 }
 
+/// The PLC calls the emergency program of head 2: X0 of G53 is the zero point of the machine. Where its file is missing, the run
+/// goes well until it is called.
+#[test]
+fn an_emergency_program_is_called() {
+    let folder = Folder::with_portal();
+    let script = "start+3: plc 2:P8710=1\n";
+    let (code, report, errors) = with_script(&folder, script, "--read 2:P8900,2:P12151");
+    assert_eq!((code, &report["messages"]), (0, &json!([])), "{errors}");
+    assert_eq!(report["reads"]["2:P12151"], json!(3000.0), "{report}");
+    std::fs::remove_file(folder.path("portal/programs/P9002.900")).unwrap();
+    assert_eq!(folder.bahn("run --machine portal --fresh").code(), 0);
+    let (code, report, _) = with_script(&folder, script, "");
+    assert_eq!(code, 1);
+    assert_eq!(
+        report["messages"][0]["text"],
+        json!("emergency program 1 is not there"),
+        "{report}"
+    );
+}
+
 /// P8801 of an earlier run does not let a program that is named begin in its middle. From block 300 on the tool is changed and four
 /// holes are drilled, 14 mm each.
 #[test]

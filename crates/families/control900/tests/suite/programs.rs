@@ -204,6 +204,20 @@ fn a_clone_goes_on_alike() {
     }
 }
 
+/// P8712 calls emergency program 3, which nobody has: what runs is broken off with a message, not gone on with.
+#[test]
+fn an_emergency_program_that_is_not_there_is_said() {
+    let mut rig = Rig::on("");
+    rig.start(1, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
+    rig.until(|rig| rig.read("P12151") > 50.0);
+    rig.plc("P8712", "1");
+    rig.until_end(1);
+    let x = rig.read("P12151");
+    assert!((50.0..60.0).contains(&x), "{x}");
+    let said: Vec<String> = rig.control.pending_messages(1).map(ToString::to_string).collect();
+    assert_eq!(said, ["emergency program 3 is not there, channel 1"]);
+}
+
 /// Emergency program 1 interrupts the one that runs, whose place is kept, and is started with its block P8821; the mode AUTO
 /// stays, P8710 is 0 again [002:3856-3873].
 #[test]

@@ -186,8 +186,11 @@ impl<P: Operable> Host<P, Control900> {
             .zip(self.now.control.language())
             .map(|(number, language)| self.beside.read(number, channel, language));
         let program = match program {
+            // Who calls an emergency program that is not there hears it then.
             Some(Err(what)) => {
-                self.tell_in(k, Notice900::Fault(what));
+                if which == 0 {
+                    self.tell_in(k, Notice900::Fault(what));
+                }
                 None
             }
             other => other.and_then(Result::ok),
