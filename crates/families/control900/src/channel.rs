@@ -241,6 +241,7 @@ impl Site<'_> {
             stop,
             branch,
             block: self.at.map_or(0, |at| at.block.block),
+            target: target.filter(|_| branch),
             at: self.at.map_or_else(BlockRef::default, |at| at.block),
             ack_us: None,
             taken: false,

@@ -2,10 +2,13 @@
 //!
 //! Decision: A change to HAND breaks the program off, whose place is kept for a restart [002:4156-4193]
 //!
+//! Decision: A System 900 starts no program under a message that breaks it off: who starts acknowledges first
+//!
 //! Decision: Of P8706 counts the write of a value other than 0; while nothing waits it does nothing
 
 use bahn_system900::{
-    AxisParameter, ChannelParameter, Channels, Meaning, Place, Together, acknowledges_with_mode,
+    AxisParameter, ChannelParameter, Channels, Event, Meaning, Place, Together, Writer,
+    acknowledges_with_mode,
 };
 
 use crate::answers::bit;
@@ -30,7 +33,7 @@ pub(crate) fn notice(machine: &mut Machine, place: Place) {
 }
 
 /// Locks follow their switches, and the modes of the channels.
-fn follow_locks(machine: &mut Machine) {
+pub(crate) fn follow_locks(machine: &mut Machine) {
     let automatic = |channel: &&Channel| channel.mode != Mode::Hand;
     let channels = machine.channels.iter().filter(automatic);
     let automatic = channels.fold(0u8, |all, channel| all | bit(channel.number));
@@ -109,9 +112,7 @@ fn press(machine: &mut Machine, number: u8, key: i64) {
 }
 
 fn request_start(machine: &mut Machine, number: u8, start: i64) {
-    machine
-        .memory
-        .set_channel(number, ChannelParameter::StartRequest, start);
+    machine.send(number, ChannelParameter::StartRequest, start, Writer::Control);
     machine.answers.ask_start(number);
 }
 
@@ -119,9 +120,10 @@ fn request_start(machine: &mut Machine, number: u8, start: i64) {
 fn ask_mode(machine: &mut Machine, number: u8, mode: i64) {
     together(machine, number, Together::Mode, |machine, k| {
         let number = k as u8 + 1;
-        machine
-            .memory
-            .set_channel(number, ChannelParameter::ModeRequest, mode);
+        let asked = machine.memory.of_channel(number, ChannelParameter::ModeRequest);
+        if asked.whole() != Some(mode) {
+            machine.send(number, ChannelParameter::ModeRequest, mode, Writer::Control);
+        }
         machine.answers.ask_mode(number);
         if Mode::of(mode) == Some(Mode::Hand) && acknowledges_with_mode(&machine.memory, number) {
             acknowledge(machine, number);
@@ -169,7 +171,7 @@ fn take_start(machine: &mut Machine, number: u8, start: bool) {
     }
 }
 
-/// The mode is AUTO, the axes are enabled and referenced, and there is a program.
+/// The mode is AUTO, the axes are enabled and referenced, there is a program, and no message holds it back.
 pub(crate) fn may_start(machine: &Machine, number: u8) -> bool {
     let Some(channel) = machine.channels.get(usize::from(number) - 1) else {
         return false;
@@ -177,12 +179,15 @@ pub(crate) fn may_start(machine: &Machine, number: u8) -> bool {
     let is_set = |parameter| machine.memory.of_channel(number, parameter).whole() == Some(1);
     channel.mode != Mode::Hand
         && channel.program.is_some()
+        && !machine.messages.break_off(number)
         && is_set(ChannelParameter::AxesEnabled)
         && is_set(ChannelParameter::Referenced)
 }
 
 /// P8706: M functions with stop are done; else a branch that waits is confirmed.
 fn release(machine: &mut Machine, number: u8) {
+    let given = machine.memory.of_channel(number, ChannelParameter::BlockRelease);
+    machine.record(Event::Release(number, given));
     let Some(channel) = machine.channels.get_mut(usize::from(number) - 1) else {
         return;
     };

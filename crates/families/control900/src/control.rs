@@ -4,12 +4,14 @@ use bahn_kernel::{Clock, Feeder, RunState};
 use bahn_path::{BlockRef, PathElement};
 use bahn_reader::{Reader, Warning};
 use bahn_servo::{Commands, Plant};
-use bahn_system900::{Memory, Name, Receivers, SpaceError, Value};
+use bahn_system900::{
+    EventBuffer, Flash, FlashError, FlashScene, Memory, Name, Programs, SpaceError, Value, Writer,
+};
 
 use crate::channel::{Channel, Mode};
 use crate::language::Language;
 use crate::machine::Machine;
-use crate::message::Message;
+use crate::message::{Kind, Message};
 use crate::setup::Setup;
 use crate::transfer::Transfer;
 use crate::{branch, command, monitor, status};
@@ -102,27 +104,77 @@ impl Control900 {
         &self.clock.commands
     }
 
-    /// The operator writes a parameter; who takes notice of it.
+    /// The operator writes a parameter.
     ///
     /// # Errors
     /// When the name leads nowhere, the value does not go in, or a lock that is set locks the parameter: then nothing is
     /// written.
-    pub fn write_operator(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
-        let receivers = self.machine.memory.enter(name, value)?;
-        let place = self.machine.memory.place(name)?;
-        command::notice(&mut self.machine, place);
-        Ok(receivers)
+    pub fn write_operator(&mut self, name: Name, value: Value) -> Result<(), SpaceError> {
+        self.write(Writer::Editor, name, value)
     }
 
-    /// The PLC writes a parameter, past all locks; who takes notice of it.
+    /// The PLC writes a parameter, past all locks.
     ///
     /// # Errors
     /// When the name leads nowhere, or the value does not go in.
-    pub fn write_plc(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
-        let receivers = self.machine.memory.write(name, value)?;
-        let place = self.machine.memory.place(name)?;
+    pub fn write_plc(&mut self, name: Name, value: Value) -> Result<(), SpaceError> {
+        self.write(Writer::Plc, name, value)
+    }
+
+    fn write(&mut self, writer: Writer, name: Name, value: Value) -> Result<(), SpaceError> {
+        let Machine {
+            traffic,
+            memory,
+            now_us,
+            function,
+            ..
+        } = &mut self.machine;
+        let asked = traffic.write(memory, *now_us / 1000, writer, name, value)?;
+        *function = asked.or(*function);
+        let place = memory.place(name)?;
         command::notice(&mut self.machine, place);
-        Ok(receivers)
+        Ok(())
+    }
+
+    /// The function of q10 that somebody has asked for since the last call.
+    pub fn take_function(&mut self) -> Option<i64> {
+        self.machine.function.take()
+    }
+
+    /// Executes a function of q10 in HAND, outside the cycle: how many parameters or programs it was about [002:403-534].
+    ///
+    /// # Errors
+    /// Why it is refused, which is shown as a message, too; then nothing has changed.
+    pub fn execute(
+        &mut self,
+        number: i64,
+        flash: &mut Flash,
+        programs: &mut Programs,
+    ) -> Result<usize, FlashError> {
+        let is_in_hand = self
+            .machine
+            .channels
+            .iter()
+            .all(|channel| channel.mode == Mode::Hand);
+        let scene = FlashScene {
+            memory: &mut self.machine.memory,
+            programs,
+            is_in_hand,
+            is_reading: false,
+        };
+        let done = flash.run(number, scene);
+        match &done {
+            Ok(_) => command::follow_locks(&mut self.machine),
+            Err(error) => self
+                .machine
+                .say(0, 1, None, Kind::Display, error.to_string().into()),
+        }
+        done
+    }
+
+    /// What was recorded of keys, messages, transfers and blocks [002:6064-6198].
+    pub fn events(&self) -> &EventBuffer {
+        self.machine.traffic.events()
     }
 
     /// All parameters as they are now.
@@ -202,6 +254,10 @@ impl Control900 {
     /// The block whose fault has broken the program of a channel, from 1 on, off.
     pub fn faulty_block(&self, channel: u8) -> Option<BlockRef> {
         self.channel(channel)?.faulty
+    }
+
+    pub(crate) fn machine(&self) -> &Machine {
+        &self.machine
     }
 
     fn channel(&self, channel: u8) -> Option<&Channel> {

@@ -5,7 +5,7 @@ use bahn_motion::Stop;
 use bahn_path::LiveData;
 use bahn_reader::{Message, ProgramError};
 use bahn_servo::{Commands, Measured};
-use bahn_system900::{ChannelParameter, Place};
+use bahn_system900::{ChannelParameter, Event, Place, Writer};
 
 use crate::machine::Machine;
 use crate::message::Kind;
@@ -208,6 +208,7 @@ fn move_channel(machine: &mut Machine, k: usize) {
     }
     number_blocks(machine, k, sent);
     while let Some(q) = machine.written.take() {
+        machine.pass(Place::Q(q), Writer::Program);
         command::notice(machine, Place::Q(q));
     }
     let Some((run, feeder, mut site)) = machine.parts(k) else {
@@ -226,5 +227,18 @@ fn number_blocks(machine: &mut Machine, k: usize, sent: u64) {
     let mut transfers = std::mem::take(&mut machine.transfers);
     let count = usize::try_from(transfers.count() - sent).unwrap_or(0);
     transfers.number(count, |block| machine.block_number(k, block));
+    let mut waits = false;
+    for (place, sent) in (0..).zip(transfers.last(count)) {
+        machine.record(Event::Function {
+            channel: sent.channel,
+            m: sent.m,
+            place,
+            branch: sent.target,
+        });
+        waits |= sent.stop;
+    }
+    if waits {
+        machine.record(Event::EndOfBlock(k as u8 + 1));
+    }
     machine.transfers = transfers;
 }

@@ -6,7 +6,7 @@
 //! - [`Control900`] is the control: parameters in, programs in, cycles on a machine;
 //! - [`Setup`] says what answers in the place of a PLC: [`StandardAnswers`];
 //! - [`Transfer`]s are M functions on their way to the PLC, [`Message`]s what the control says;
-//! - [`ideal_machine`] is a machine of which nothing is known but its parameters.
+//! - [`AxisView`] is an axis as it is moved; [`ideal_machine`] is a machine of which nothing is known but its parameters.
 //!
 //! ```
 //! use bahn_control900::{Control900, Mode, Setup, ideal_machine};
@@ -52,6 +52,7 @@ mod setup;
 mod status;
 mod transfer;
 mod units;
+mod view;
 
 pub use channel::Mode;
 pub use control::Control900;
@@ -60,3 +61,4 @@ pub use message::{Kind, Message};
 pub use setup::{Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
 pub use units::{cycle_us, ideal_machine, path_limits};
+pub use view::AxisView;

@@ -3,7 +3,7 @@
 use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
 use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
 use bahn_path::{BlockRef, Position};
-use bahn_system900::{ChannelParameter, Memory};
+use bahn_system900::{ChannelParameter, Event, Memory, Place, ProgramName, Traffic, Writer};
 
 use crate::answers::Answers;
 use crate::axis_state::{AxisPlace, Hand, Watch};
@@ -27,6 +27,10 @@ const NO_TEST: EmergencyStopTest = EmergencyStopTest {
 pub(crate) struct Machine {
     pub core: Core,
     pub memory: Memory,
+    /// What goes between control, PLC and panel, as it is recorded.
+    pub traffic: Traffic,
+    /// The function of q10 that is to be executed.
+    pub function: Option<i64>,
     pub channels: Vec<Channel>,
     /// What is known of the axes beside the kernel, in its order.
     pub places: Vec<AxisPlace>,
@@ -67,6 +71,8 @@ impl Machine {
                 emergency: EmergencyStop::new(NO_TEST, false),
                 loops_closed: false,
             },
+            traffic: Traffic::new(),
+            function: None,
             memory,
             channels,
             places,
@@ -83,6 +89,7 @@ impl Machine {
         };
         machine.messages.reserve();
         machine.transfers.reserve();
+        machine.record(Event::Boot);
         machine
     }
 
@@ -142,6 +149,26 @@ impl Machine {
         })
     }
 
+    /// Records an event that the parameters ask for.
+    pub fn record(&mut self, event: Event) {
+        let time_ms = self.now_us / 1000;
+        self.traffic.record(&self.memory, time_ms, event);
+    }
+
+    /// A parameter of a channel gets another value, and who is told of it.
+    pub fn send(&mut self, number: u8, parameter: ChannelParameter, value: i64, by: Writer) {
+        self.memory.set_channel(number, parameter, value);
+        if let Some(place) = self.memory.channel_place(number, parameter) {
+            self.pass(place, by);
+        }
+    }
+
+    /// Somebody has written a place.
+    pub fn pass(&mut self, place: Place, by: Writer) {
+        let time_ms = self.now_us / 1000;
+        self.traffic.pass(&mut self.memory, time_ms, by, place);
+    }
+
     /// Reads ahead for a channel, outside the cycle; begins a run that is to begin.
     pub fn prepare(&mut self, k: usize) {
         let [_, start_block] = self.start_of(k);
@@ -172,6 +199,17 @@ impl Machine {
             (Some(language), Some(feeder)) => (language.number)(feeder.reader(), block),
             _ => block.block,
         }
+    }
+
+    /// The program or cycle in which a block of a channel stands.
+    pub fn program_name(&self, k: usize, block: BlockRef) -> ProgramName {
+        let feeder = self.channels.get(k).and_then(|channel| channel.feeder.as_ref());
+        let program = feeder.and_then(|feeder| feeder.reader().program(block.program));
+        let of_file = program.and_then(|program| ProgramName::of_file(program.name()));
+        of_file.unwrap_or_else(|| {
+            let [number, _] = self.start_of(k);
+            ProgramName::Program(u32::try_from(number).unwrap_or(0))
+        })
     }
 
     /// A program that is read has the parameters meanwhile.
@@ -264,6 +302,9 @@ impl Machine {
         };
         if !self.messages.raise(message) {
             return;
+        }
+        if let Some(number) = u16::try_from(number).ok().filter(|number| *number > 0) {
+            self.record(Event::Message(channel, number));
         }
         for other in &mut self.channels {
             let is_own = other.number == channel;

@@ -135,6 +135,19 @@ impl Messages {
         &self.list
     }
 
+    /// One that nobody has acknowledged breaks the program of a channel off.
+    pub fn break_off(&self, channel: u8) -> bool {
+        let mut open = self
+            .list
+            .iter()
+            .filter(|message| message.acknowledged_us.is_none());
+        open.any(|message| match message.kind {
+            Kind::System => true,
+            Kind::High => message.channel == channel,
+            Kind::Low | Kind::Display => false,
+        })
+    }
+
     /// Those of a channel that nobody has acknowledged.
     pub fn pending(&self, channel: u8) -> impl Iterator<Item = &Message> {
         let all = self.list.iter();

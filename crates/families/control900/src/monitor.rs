@@ -24,6 +24,10 @@ pub(crate) fn watch(machine: &mut Machine) {
             show_axis_message(machine, &place, number);
             let logical = Some(place.logical).filter(|logical| *logical > 0);
             machine.raise(number, place.channel + 1, logical, Kind::High);
+            // Also while the message is pending: an emergency program moves no axis that has failed.
+            if let Some(channel) = machine.channels.get_mut(usize::from(place.channel)) {
+                channel.wanted.abort = true;
+            }
         }
         watch_areas(machine, index);
     }

@@ -1,6 +1,6 @@
 //! A cycle of the PLC where the standard answers stand in its place.
 
-use bahn_system900::{ChannelParameter, Memory};
+use bahn_system900::{ChannelParameter, Memory, Writer};
 
 use crate::answers::{Answers, bit};
 use crate::command;
@@ -81,7 +81,7 @@ fn copy(machine: &mut Machine, number: u8, from: ChannelParameter, to: ChannelPa
 
 /// The PLC writes a parameter of a channel.
 fn plc(machine: &mut Machine, number: u8, parameter: ChannelParameter, value: i64) {
-    machine.memory.set_channel(number, parameter, value);
+    machine.send(number, parameter, value, Writer::Plc);
     if let Some(place) = Memory::channel_place(&machine.memory, number, parameter) {
         command::notice(machine, place);
     }

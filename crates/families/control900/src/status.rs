@@ -2,7 +2,7 @@
 
 use bahn_kernel::{AxisUnit, RunState};
 use bahn_path::{Curve, Direction, FeedRate};
-use bahn_system900::{AxisParameter, ChannelParameter, Memory, Place};
+use bahn_system900::{AxisParameter, ChannelParameter, Event, Memory, Place, Writer};
 
 use crate::axis_state::AxisPlace;
 use crate::machine::Machine;
@@ -43,6 +43,24 @@ pub(crate) fn show(machine: &mut Machine) {
     }
 }
 
+/// P8685, which the PLC is told of when it changes.
+fn show_state(machine: &mut Machine, k: usize) -> i64 {
+    let Some(channel) = machine.channels.get(k) else {
+        return 0;
+    };
+    let (number, progress) = (channel.number, channel.run.progress());
+    let state = match progress.state() {
+        _ if !progress.is_on_its_way() => 0,
+        RunState::Idle | RunState::Running => 2,
+        RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => 1,
+    };
+    let before = machine.memory.of_channel(number, ChannelParameter::ProgramState);
+    if before.whole() != Some(state) {
+        machine.send(number, ChannelParameter::ProgramState, state, Writer::Control);
+    }
+    state
+}
+
 fn show_channel(machine: &mut Machine, k: usize) {
     let referenced = machine.is_referenced(k);
     let [program, _] = machine.start_of(k);
@@ -54,19 +72,19 @@ fn show_channel(machine: &mut Machine, k: usize) {
         (Some(executed), _) => machine.block_number(k, executed),
         (None, _) => 0,
     };
+    let state = show_state(machine, k);
+    let begins = executed.filter(|executed| shown.is_none_or(|(shown, _)| shown != *executed));
     if let Some(channel) = machine.channels.get_mut(k) {
         channel.shown = executed.map(|executed| (executed, block));
+    }
+    if let Some(begins) = begins {
+        let name = machine.program_name(k, begins);
+        machine.record(Event::Block(k as u8 + 1, name, block));
     }
     let Some(channel) = machine.channels.get(k) else {
         return;
     };
     let (number, memory) = (channel.number, &mut machine.memory);
-    let state = match channel.run.progress().state() {
-        _ if !channel.run.progress().is_on_its_way() => 0,
-        RunState::Idle | RunState::Running => 2,
-        RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => 1,
-    };
-    memory.set_channel(number, ChannelParameter::ProgramState, state);
     memory.set_channel(number, ChannelParameter::AllReferenced, i64::from(referenced));
     let mut speed = channel.run.track.speed_mm_s() * 60.0;
     if state == 0 {

@@ -36,6 +36,8 @@ pub struct Transfer {
     pub branch: bool,
     /// The number of the block.
     pub block: u32,
+    /// Where a branch leads, the number of a block.
+    pub target: Option<u32>,
     /// Where it stands in the programs.
     pub(crate) at: BlockRef,
     /// When it was acknowledged, µs; `None` while it is not, and for those that need not be.
@@ -67,6 +69,11 @@ impl Transfers {
             self.dropped += 1;
         }
         self.list.push_back(transfer);
+    }
+
+    /// The last ones, the first one first.
+    pub fn last(&self, count: usize) -> impl Iterator<Item = &Transfer> {
+        self.list.iter().skip(self.list.len().saturating_sub(count))
     }
 
     /// The last ones of a channel, whose blocks have no number yet, get it.

@@ -9,7 +9,8 @@
 //! - [`DataFile`]: a file with a line for each parameter, its faults, and its [`Change`]s; [`check`] says what of it does
 //!   not go together;
 //! - [`Explanation`], [`Mapped`], [`Held`], [`differences`]: what is said of parameters by their names;
-//! - [`ZeroPoints`], [`Tools`], [`MFunction`]: what parameters of a channel say together.
+//! - [`ZeroPoints`], [`Tools`], [`MFunction`]: what parameters of a channel say together;
+//! - [`Traffic`]: what goes between a control that runs, its PLC, its panel and its programs, recorded as [`Event`]s.
 //!
 //! ```
 //! use bahn_system900::{DataFile, check, row};
@@ -52,11 +53,9 @@ mod name;
 mod networks;
 mod numbered;
 mod numbers;
-mod outbox;
 mod path_data;
 mod programs;
 mod reports;
-mod running;
 mod shared_block;
 mod slots;
 mod start;
@@ -64,6 +63,7 @@ mod status;
 mod table;
 mod tool_blocks;
 mod tools;
+mod traffic;
 mod units;
 mod value;
 mod zero;
@@ -92,17 +92,16 @@ pub use messages::{
 };
 pub use name::{Name, NoName};
 pub use networks::{Together, network, together};
-pub use outbox::{News, Receiver, Transfer};
 pub use path_data::{PathData, ToolBlock};
 pub use programs::{NoProgramName, ProgramName, Programs};
 pub use reports::{Difference, Explanation, Flags, Held, Mapped, differences};
-pub use running::{AxisCommand, Routine, Running};
 pub use shared_block::{CouplingBlock, HandwheelBlock, SharedParameter, SpindleBlock};
 pub use slots::{LOGICAL_AXES, slots};
 pub use start::{Reset, waits_for_key};
 pub use status::{LOCKS, NoStatus, Receivers, Status};
 pub use table::{Effect, Needs, Row, row, rows};
 pub use tools::{Tool, Tools};
+pub use traffic::Traffic;
 pub use units::Unit;
 pub use value::{DECIMALS_MAX, Value, ValueError};
 pub use zero::{ZeroPoint, ZeroPoints};

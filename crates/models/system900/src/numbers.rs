@@ -115,12 +115,8 @@ pub const DISPLAYS: std::ops::Range<u32> = 150..170;
 pub const KEY_SWITCH: u32 = 11_000;
 /// An entry in the event buffer [002:6197-6198].
 pub const SAMPLE_ENTRY: u32 = 11_279;
-/// Acknowledges the messages of a channel [002:3376-3378].
-pub const ACKNOWLEDGE: u32 = 8508;
 /// Switches and what they lock.
 pub const LOCK_SWITCHES: std::ops::Range<u32> = SWITCHES..ACTIVE_LOCKS;
-/// In the parameters of an axis: its position counts as this [002:7795-7797].
-pub const POSITION: u32 = 110;
 /// In the parameters of an axis: it moves by so much [002:7799-7806].
 pub const RELATIVE: u32 = 111;
 /// In the parameters of an axis: it moves to there [002:7808-7815].

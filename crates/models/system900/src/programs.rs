@@ -23,6 +23,23 @@ pub enum ProgramName {
 pub struct NoProgramName(String);
 
 impl ProgramName {
+    /// That of a file: `P1000` of `P1000.900`.
+    ///
+    /// ```
+    /// use bahn_system900::ProgramName;
+    /// assert_eq!(ProgramName::of_file("Z6.900"), Some(ProgramName::Cycle(6)));
+    /// assert_eq!(ProgramName::of_file("1000.900"), None);
+    /// ```
+    pub fn of_file(name: &str) -> Option<ProgramName> {
+        let stem = name.split('.').next()?;
+        let number = |digits: &str| digits.parse().ok();
+        match stem.split_at_checked(1)? {
+            ("P" | "p", digits) => number(digits).map(ProgramName::Program),
+            ("Z" | "z", digits) => number(digits).map(ProgramName::Cycle),
+            _ => None,
+        }
+    }
+
     /// Whether it is a cycle.
     pub fn is_cycle(self) -> bool {
         matches!(self, ProgramName::Cycle(_))

@@ -178,6 +178,13 @@ impl Memory {
         }
     }
 
+    /// Where the potentiometer of an override, 1 to 4, is: 0 to 255.
+    pub fn override_place(&self, number: u8) -> Option<Place> {
+        let at = u32::from(number.checked_sub(1)?) * OVERRIDE_BLOCK + 1;
+        let place = SharedParameter::Override.number() - SHARED.0 + SHARED.1 + at;
+        (number <= FREE_OVERRIDES).then_some(Place::Q(place))
+    }
+
     /// Stores what an override is now.
     pub fn show_override(&mut self, number: u8) {
         if (1..=OVERRIDES).contains(&number) {

@@ -46,12 +46,17 @@ pub(crate) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     if Machine900::is_meant(&options.machine) {
         return system900::command(options);
     }
-    match options.read.first() {
-        Some(name) => Err(UsageError::new(format!(
+    if let Some(name) = options.read.first() {
+        return Err(UsageError::new(format!(
             "--read {name}: a parameter of a System 900, and the machine has a TNC"
-        ))),
-        None => on_a_tnc(options),
+        )));
     }
+    if options.run.sample.is_some() {
+        return Err(UsageError::new(
+            "--sample writes the event buffer of a System 900, and the machine has a TNC",
+        ));
+    }
+    on_a_tnc(options)
 }
 
 /// Runs a program on a machine with a TNC.

@@ -32,6 +32,8 @@ Examples:
       `probe insert` in the script puts the touch probe into the spindle.
   bahn run --machine machines/twin --record twin.csv --signals X.actual,2:X.actual
       Two channels, each with the program that machine.toml names; LEFT.H RIGHT.H before --machine would name them.
+  bahn run --machine machines/portal900 --fresh --read P12154 --sample events.txt
+      A machine with a System 900: all channels; parameters at the end, and the event buffer.
   bahn run PALLET.H --machine machines/mill --with machines/module-tnc360 --fresh
       A positioning module beside the machine, with a control of its own; docs/positioning-module.md tells of it.
 
@@ -129,6 +131,7 @@ impl RunMachineOptions {
     pub fn written(&self) -> Vec<(&'static str, &Path)> {
         let log = self.run.log.iter().map(|path| ("--log", path.as_path()));
         let junit = self.run.junit.iter().map(|path| ("--junit", path.as_path()));
+        let sample = self.run.sample.iter().map(|path| ("--sample", path.as_path()));
         let record = self.recording.record.iter();
         let record = record.map(|path| ("--record", path.as_path()));
         let scope = self.oscilloscope.oscilloscope.iter();
@@ -139,6 +142,7 @@ impl RunMachineOptions {
             .chain(log)
             .chain(junit)
             .chain(record)
+            .chain(sample)
             .collect()
     }
 }
@@ -156,6 +160,9 @@ pub(crate) struct RunControl {
     /// Write what was done to control and machine, to be repeated with --replay.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath)]
     pub log: Option<PathBuf>,
+    /// Write the event buffer of a System 900 at the end of the run: P11271 and following say what it records.
+    #[arg(long, value_name = "OUT.txt", value_hint = ValueHint::FilePath)]
+    pub sample: Option<PathBuf>,
     /// Repeat a run from its log; a log that was damaged, cut off or edited is warned of.
     #[arg(long, value_name = "LOG", value_hint = ValueHint::FilePath, conflicts_with = "script")]
     pub replay: Option<PathBuf>,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use bahn_control900::Control900;
 use bahn_host::{
     AnyPlant, Clock, Host, Host900, Job900, LogFile, Machine900, Operator900, Play, PowerOn900, Script900,
     Stage900, is_whole,
@@ -179,6 +180,9 @@ fn finish(
     options: &RunMachineOptions,
 ) -> Result<Outcome, UsageError> {
     let mut written = session.finish_files().map_err(UsageError::from);
+    if let Some(path) = &options.run.sample {
+        written = written.and(write_sample(path, session.host.control()));
+    }
     diagnostics::print_faults(&session.play.failures());
     let report = RunReport900::of(&mut session, ended, &machine.folder.name, &options.read);
     if let Some((channel, error)) = report.failure() {
@@ -201,12 +205,20 @@ fn finish(
         console::print_json(&report)?;
     } else {
         let mut names = options.output.names(written.is_ok());
-        let files = options.recording.record.iter().chain(&options.run.log);
+        let further = [&options.recording.record, &options.run.log, &options.run.sample];
+        let files = further.into_iter().flatten();
         names.extend(files.map(|path| path.display().to_string()));
         console::print(&report.text(&names))?;
     }
     written?;
     Ok(outcome)
+}
+
+/// The event buffer as the control puts it out. It has no calendar: no date is said.
+fn write_sample(path: &Path, control: &Control900) -> Result<(), UsageError> {
+    let text = control.events().output("-", control.now_us() / 1000);
+    files::write_whole(path, text.as_bytes())?;
+    Ok(())
 }
 
 /// Says it with the block where that is known.

@@ -10,7 +10,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use bahn_host::LoadedMachine;
+use bahn_host::{LoadedMachine, Machine900};
+use bahn_text::Diagnostic;
 use bahn_trials::torture::{Campaign, Happening, LeftOut, Rule};
 use serde::Serialize;
 
@@ -80,15 +81,13 @@ pub(crate) fn command(options: &TortureOptions) -> Result<Outcome, UsageError> {
     let mut report = Report::default();
     let mut script = None;
     for folder in &folders {
-        let mut machine = match LoadedMachine::load(folder)? {
-            Ok(machine) => machine,
+        let mut campaign = match load(folder, options)? {
+            Ok(campaign) => campaign,
             Err(faults) => {
                 diagnostics::print_faults(&faults);
                 return Ok(Outcome::ProgramError);
             }
         };
-        settings::assign(&mut machine.parameters, &options.mp)?;
-        let mut campaign = Campaign::new(machine, &options.program)?;
         for event in &options.event {
             campaign.also(event)?;
         }
@@ -116,6 +115,26 @@ pub(crate) fn command(options: &TortureOptions) -> Result<Outcome, UsageError> {
         Outcome::Fine
     } else {
         Outcome::ProgramError
+    })
+}
+
+/// A machine of whatever family; the inner `Err` holds every fault of every file.
+fn load(folder: &Path, options: &TortureOptions) -> Result<Result<Campaign, Vec<Diagnostic>>, UsageError> {
+    if Machine900::is_meant(folder) {
+        if !options.mp.is_empty() {
+            return Err(UsageError::new(format!(
+                "--mp is for a TNC, and {} has a System 900: --event P8051=1 writes a parameter",
+                folder.display()
+            )));
+        }
+        return Ok(Campaign::load(folder, &options.program)?);
+    }
+    Ok(match LoadedMachine::load(folder)? {
+        Ok(mut machine) => {
+            settings::assign(&mut machine.parameters, &options.mp)?;
+            Ok(Campaign::new(machine, &options.program)?)
+        }
+        Err(faults) => Err(faults),
     })
 }
 

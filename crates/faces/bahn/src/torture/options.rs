@@ -17,6 +17,8 @@ Examples:
       A marker by which a copy of the PLC program is made to fail joins what happens.
   bahn torture --machine machines/mill-tnc360 --seeds 31..32 --record seed.txt
       Repeats one seed, and writes what happens in it as a script; bahn run repeats that with its report.
+  bahn torture --machine machines/portal900 --seeds 0..50
+      A machine with a System 900: all its channels at once.
 
 A seed says everything: the program, the moment of its undisturbed run, what fails, what is pressed, and when. In the end
 everything is repaired and the run goes on. docs/torture.md tells what is checked after every contour cycle.
@@ -36,7 +38,8 @@ pub(crate) struct TortureOptions {
     /// One machine parameter instead of that of the list, as 4310.0=3 (repeatable, or several with commas).
     #[arg(long = "mp", value_name = "N=V", value_delimiter = ',')]
     pub mp: Vec<String>,
-    /// Operands that the PLC program does not expect, as a script has them, again for several: M190=1.
+    /// Operands that the PLC program does not expect, as a script has them, again for several: M190=1; on a System 900 a
+    /// parameter, plc P8706=1.
     #[arg(long, value_name = "OPERANDS")]
     pub event: Vec<String>,
     /// Seeds from A to below B, for each machine.

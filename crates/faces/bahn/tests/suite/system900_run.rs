@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::Folder;
+use crate::support::{Folder, machines};
 
 /// What a run with a script came to.
 fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String) {
@@ -221,6 +221,78 @@ fn parameters_survive_power_off() {
     assert_eq!(run.code(), 2);
     assert!(
         run.err().contains("parameters.q") && run.err().contains("1:7"),
+        "{}",
+        run.err()
+    );
+}
+
+/// The event buffer: P11271 and P11272 ask for M functions and blocks. A TNC has none.
+#[test]
+fn the_event_buffer_is_written() {
+    let folder = Folder::with_portal();
+    let script = "0.1: P11271=$110, P11272=$110\n";
+    let (code, _, errors) = with_script(&folder, script, "--sample events.txt");
+    assert_eq!(code, 0, "{errors}");
+    let text = folder.read("events.txt");
+    assert!(
+        text.starts_with("SAMPLE DATA\n\nOutput:\nDATE: -\n") && text.ends_with("\nSAMPLE END\n"),
+        "{text}"
+    );
+    let after = |earlier: &str, later: &str| {
+        let [earlier, later] = [earlier, later].map(|event| text.find(event).unwrap_or(usize::MAX));
+        earlier < later && later < usize::MAX
+    };
+    assert!(
+        after(
+            "PROG: K1 P1000 N110",
+            "K1 M6 --> PLC, NR in the block:0, without branch"
+        ),
+        "{text}"
+    );
+    assert!(
+        after(
+            "K1 END OF BLOCK CNC --> PLC, CNC WAITS for acknowledgement",
+            "K1 CNC <-- PLC SAFRE: 1"
+        ) && after("K2 M81 --> PLC", "PROG: K2 P2000 N220"),
+        "{text}"
+    );
+    let mill = machines().join("mill");
+    let run = folder.bahn(&format!("run --machine {} --sample e.txt", mill.display()));
+    assert_eq!(run.code(), 2);
+    assert!(run.err().contains("--sample"), "{}", run.err());
+}
+
+/// q10 = 170 and 175 keep parameters and programs in the FLASH, which stays over power-off; 200 and 205 bring them back.
+#[test]
+fn the_flash_keeps_parameters_and_programs() {
+    let folder = Folder::with_portal();
+    let session = |lines: &str| {
+        folder.write("do.txt", lines);
+        let run =
+            folder.bahn("run --machine portal --script do.txt --operator absent --read P510 --format json");
+        (run.json(), run.err())
+    };
+    folder.write("portal/programs/P7.900", "N10 M30\n");
+    // Bit 4.5 of P510: it is stored.
+    let file = folder.read("portal/parameters.q");
+    folder.write("portal/parameters.q", &format!("{file}\nP510: 1 $20000001\n"));
+    session("0.1: P510=2\n+0.1: q10=170\n+0.1: q10=175\n+0.1: P510=3\n+0.1: end\n");
+    folder.write("portal/programs/P7.900", "N10 M2\n");
+    let (report, errors) = session("0.1: expect P510=3\n+0.1: q10=200\n+0.1: q10=205\n+0.1: end\n");
+    assert_eq!(report["reads"]["P510"], json!(2.0), "{errors}");
+    assert_eq!(folder.read("portal/programs/P7.900"), "N10 M30\n");
+    // Only in HAND.
+    let (report, _) = session("0.1: P8683=2\n+0.1: q10=120\n+0.1: end\n");
+    assert_eq!(
+        report["messages"][0]["text"],
+        json!("q10: the machine is not in HAND"),
+        "{report}"
+    );
+    folder.write("portal/state/flash", "bahn flash 1\nq");
+    let run = folder.bahn("run --machine portal");
+    assert_eq!(run.code(), 2);
+    assert!(
+        run.err().contains("flash") && run.err().contains("not whole"),
         "{}",
         run.err()
     );

@@ -4,7 +4,7 @@ use bahn_control900::Kind;
 use bahn_path::Axis;
 
 use crate::support::Rig;
-use crate::support::list::Line;
+use crate::support::list::{Line, Lines};
 
 fn far() -> [Line; 1] {
     [Line::to(&[(Axis::X, 300.0)], 6000.0)]
@@ -38,6 +38,49 @@ fn a_lag_that_lasts_is_m2001() {
         (0.0, 1000.0),
         "the program is broken off"
     );
+}
+
+/// While its message stands, START does nothing; acknowledged with HAND, the program starts again.
+#[test]
+fn nothing_starts_under_a_message() {
+    let mut rig = Rig::on("");
+    rig.start(1, &far());
+    rig.until(|rig| rig.exact("P12151") > 100.0);
+    rig.plant.ideal.drives[0].as_mut().unwrap().is_dead = true;
+    message(&mut rig);
+    rig.seconds(0.5);
+    rig.plant.ideal.drives[0].as_mut().unwrap().is_dead = false;
+    rig.seconds(2.0);
+    rig.operator("P8682", "2");
+    rig.seconds(0.5);
+    assert_eq!((rig.read("P8685"), rig.read("P8704")), (0.0, 0.0));
+    rig.operator("P8683", "1");
+    rig.seconds(0.1);
+    rig.operator("P8683", "2");
+    rig.seconds(0.1);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8685") == 2.0);
+    rig.until_end(1);
+    assert_eq!(rig.read("P12151"), 300.0);
+}
+
+/// An emergency program moves no axis whose drive has failed, though its message is pending already.
+#[test]
+fn an_emergency_program_moves_no_failed_axis() {
+    let mut rig = Rig::on("");
+    rig.control
+        .set_emergency_program(1, 1, Some(Lines::boxed(&far())));
+    rig.start(1, &far());
+    rig.until(|rig| rig.exact("P12151") > 100.0);
+    rig.plant.ideal.drives[0].as_mut().unwrap().is_dead = true;
+    message(&mut rig);
+    rig.seconds(0.5);
+    let stands = rig.exact("P12151");
+    rig.plc("P8710", "1");
+    rig.seconds(1.0);
+    assert_eq!((rig.read("P8685"), rig.control.messages().len()), (0.0, 1));
+    let moved = rig.exact("P12151") - stands;
+    assert!(moved.abs() < 0.01, "{moved}");
 }
 
 /// P12025 = -1 switches it off; what stays is that the axis does not come to a standstill within 3 s.

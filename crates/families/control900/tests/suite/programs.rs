@@ -2,6 +2,7 @@
 
 use bahn_control900::{Mode, StandardAnswers};
 use bahn_path::Axis;
+use bahn_system900::{Flash, FlashError, Programs};
 
 use crate::support::Rig;
 use crate::support::list::{Line, Lines};
@@ -211,8 +212,10 @@ fn an_emergency_program_that_is_not_there_is_said() {
     rig.start(1, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
     rig.until(|rig| rig.read("P12151") > 50.0);
     rig.plc("P8712", "1");
-    rig.until_end(1);
+    rig.seconds(1.0);
+    assert_eq!(rig.read("P8685"), 0.0);
     let x = rig.read("P12151");
+    // It comes down from 50 mm/s.
     assert!((50.0..60.0).contains(&x), "{x}");
     let said: Vec<String> = rig.control.pending_messages(1).map(ToString::to_string).collect();
     assert_eq!(said, ["emergency program 3 is not there, channel 1"]);
@@ -247,4 +250,69 @@ fn an_emergency_program_interrupts() {
     rig.until(|rig| rig.read("P8685") == 2.0);
     rig.until_end(1);
     assert_eq!((rig.read("P12151"), rig.read("P8900")), (300.0, 1000.0));
+}
+
+/// The event buffer of a run in which P11271 asks for the PLC, M functions and blocks, with a transfer to the PLC, an entry and a
+/// message [002:6064-6198]: what came when, as the control puts it out.
+#[test]
+fn events_are_recorded() {
+    let mut rig = Rig::on("P11271: $111\n");
+    rig.operator("P11279", "12345");
+    rig.start(
+        1,
+        &[
+            Line::to(&[(Axis::X, 10.0)], 3000.0),
+            Line::to(&[(Axis::X, 20.0)], 3000.0),
+        ],
+    );
+    rig.until_end(1);
+    rig.plc("P8503", "3498");
+    let events: Vec<String> = rig
+        .control
+        .events()
+        .records()
+        .map(|record| record.event.to_string())
+        .collect();
+    let at = |event: &str| events.iter().position(|of| of == event);
+    assert_eq!(at("======== system boot ============="), Some(0));
+    let order = [
+        "P11279: 12345",
+        "PARA CNC --> PLC K1 P8683: 2",
+        "PARA CNC <-- PLC K1 P8703: 2",
+        "PARA CNC --> PLC K1 P8684: 1",
+        "PARA CNC <-- PLC K1 P8704: 1",
+        "PARA CNC --> PLC K1 P8685: 2",
+        "PROG: K1 P1000 N10",
+        "PROG: K1 P1000 N20",
+        "PARA CNC --> PLC K1 P8685: 0",
+        "PARA CNC <-- PLC K1 P8503: 3498",
+        "K1 message: M3498",
+    ];
+    let places: Vec<Option<usize>> = order.iter().map(|event| at(event)).collect();
+    assert!(
+        places.iter().all(Option::is_some) && places.is_sorted(),
+        "{places:?}: {events:#?}"
+    );
+}
+
+/// q10 = 170 stores what is marked in HAND alone [002:403-463].
+#[test]
+fn functions_of_the_flash_are_executed_in_hand() {
+    let mut rig = Rig::on("P51: 7 $20000401\n");
+    let (mut flash, mut programs) = (Flash::default(), Programs::default());
+    rig.operator("q10", "170");
+    let function = rig.control.take_function();
+    assert_eq!((function, rig.control.take_function()), (Some(170), None));
+    assert_eq!(rig.control.execute(170, &mut flash, &mut programs), Ok(1));
+    rig.operator("P51", "8");
+    assert_eq!(rig.control.execute(200, &mut flash, &mut programs), Ok(1));
+    assert_eq!(rig.read("P51"), 7.0);
+    rig.operator("P8683", "2");
+    rig.seconds(0.1);
+    assert_eq!(
+        rig.control.execute(170, &mut flash, &mut programs),
+        Err(FlashError::NotInHand)
+    );
+    let said: Vec<String> = rig.control.pending_messages(1).map(ToString::to_string).collect();
+    assert_eq!(said, ["q10: the machine is not in HAND, channel 1"]);
 }

@@ -3,9 +3,10 @@
 //! - `machine` loads the folder, `programs` reads part programs by their numbers, `ideal` is the machine of which nothing is
 //!   known but its parameters;
 //! - `command` is what is done, `notice` what happens, `operator` who stands by, `stage` what scripts say;
-//! - `state` is what survives power-off.
+//! - `state` is what survives power-off, `flash` what is kept without battery.
 
 mod command;
+mod flash;
 mod ideal;
 mod machine;
 mod notice;
@@ -30,6 +31,7 @@ use bahn_control900::{Control900, Setup};
 use bahn_reader::Warning;
 use bahn_system900::{ChannelParameter, Memory, SpaceError, Value};
 
+use self::flash::Flash900;
 use self::notice::Before900;
 use crate::action::Answer;
 use crate::any_plant::AnyPlant;
@@ -52,6 +54,14 @@ pub struct PowerOn900 {
     pub programs: Programs900,
     /// Where it keeps what changes; `None` keeps nothing.
     pub state: Option<State900>,
+    /// Its FLASH.
+    flash: Flash900,
+}
+
+/// What a System 900 has beside its control.
+pub struct Beside900 {
+    programs: Programs900,
+    flash: Flash900,
 }
 
 /// A System 900 that is on, with any plant.
@@ -68,6 +78,7 @@ impl PowerOn900 {
             },
             programs: Programs900::of_folder(&machine.programs()),
             state: None,
+            flash: Flash900::default(),
         }
     }
 
@@ -81,6 +92,7 @@ impl PowerOn900 {
         Ok(PowerOn900 {
             memory,
             state: Some(state),
+            flash: Flash900::open(&folder)?,
             ..PowerOn900::fresh(machine)
         })
     }
@@ -143,7 +155,11 @@ impl<P: Operable> Host<P, Control900> {
     pub fn of_system900(power_on: PowerOn900, plant: P, operator: Operator900) -> Host<P, Control900> {
         let control = Control900::new(power_on.memory, power_on.setup);
         let moment = Moment::new(control, plant, operator);
-        Host::switched_on(moment, power_on.programs, power_on.state)
+        let beside = Beside900 {
+            programs: power_on.programs,
+            flash: power_on.flash,
+        };
+        Host::switched_on(moment, beside, power_on.state)
     }
 
     /// The file of the program of a channel, from 1 on, as it was read last.
@@ -154,7 +170,20 @@ impl<P: Operable> Host<P, Control900> {
             .programs
             .get(usize::from(channel).checked_sub(1)?)?;
         let number = (*of.first()?)?;
-        Some(self.beside.file(number))
+        Some(self.beside.programs.file(number))
+    }
+
+    /// A function of q10 is executed. Programs that it has brought are read anew.
+    fn execute_function(&mut self) {
+        let Some(number) = self.now.control.take_function() else {
+            return;
+        };
+        let Beside900 { programs, flash } = &mut self.beside;
+        match flash.run(number, &mut self.now.control, programs) {
+            Ok(true) => self.now.aside.programs.fill([None; PROGRAMS]),
+            Ok(false) => {}
+            Err(error) => self.tell(HostNotice::Fault(error.to_string())),
+        }
     }
 
     /// Programs whose numbers were written are read.
@@ -184,7 +213,7 @@ impl<P: Operable> Host<P, Control900> {
         let number = number.filter(|number| *number > 0);
         let program = number
             .zip(self.now.control.language())
-            .map(|(number, language)| self.beside.read(number, channel, language));
+            .map(|(number, language)| self.beside.programs.read(number, channel, language));
         let program = match program {
             // Who calls an emergency program that is not there hears it then.
             Some(Err(what)) => {
@@ -229,7 +258,7 @@ impl Hosted for Control900 {
     /// Parameters are edited by commands.
     type Renewed = Infallible;
     type Aside = Aside900;
-    type Beside = Programs900;
+    type Beside = Beside900;
     type State = State900;
 
     fn time_us(&self) -> u64 {
@@ -311,7 +340,10 @@ impl HostFamily for Control900 {
             By::Plc => host.now.control.write_plc(name, value),
         };
         match written {
-            Ok(_) => Answer::Done,
+            Ok(()) => {
+                host.execute_function();
+                Answer::Done
+            }
             Err(held @ (SpaceError::Locked(..) | SpaceError::Closed(..))) => {
                 host.tell_in(channel, Notice900::Held(name, held.to_string()));
                 Answer::Refused

@@ -25,6 +25,11 @@ impl Programs900 {
         }
     }
 
+    /// The folder.
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// The number of a program by the name of its file: 1000 of `P1000.900`.
     ///
     /// ```

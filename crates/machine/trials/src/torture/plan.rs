@@ -1,7 +1,6 @@
 //! What a seed says: which program, from which moment of it on, and what happens when.
 
-use super::bench::Bench;
-use super::catalogue::{Catalogue, Kind, Mishap, turns};
+use super::catalogue::{Catalogue, Kind, Mishap};
 use super::dice::Dice;
 
 /// Something that happens at a time of the machine.
@@ -40,21 +39,11 @@ const TURNS: usize = 50;
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
     /// The program, by its place among those of the campaign.
-    program: usize,
+    pub program: usize,
     /// The kept moments, µs since power-on.
-    moments: Vec<u64>,
+    pub moments: Vec<u64>,
     /// What the handwheel may do beside its path.
-    turns: Vec<Mishap>,
-}
-
-impl Scene {
-    pub fn of(bench: &Bench) -> Scene {
-        Scene {
-            program: bench.number,
-            moments: bench.moments.iter().map(|moment| moment.time_us()).collect(),
-            turns: bench.led.iter().flat_map(|led| turns(led.wheels())).collect(),
-        }
-    }
+    pub turns: Vec<Mishap>,
 }
 
 /// What the seeds of a campaign choose from.

@@ -88,7 +88,7 @@ pub struct Violation {
 }
 
 impl Violation {
-    pub(super) fn new(rule: Rule, time_us: u64, values: String) -> Violation {
+    pub(in crate::torture) fn new(rule: Rule, time_us: u64, values: String) -> Violation {
         Violation {
             rule,
             time_s: time_us as f64 * 1e-6,

@@ -17,6 +17,6 @@ mod locks;
 mod memory;
 mod messages;
 mod portal;
-mod running;
 mod table;
+mod traffic;
 mod units;

@@ -4,7 +4,7 @@ use bahn_machine::{AxisState, Machine};
 use bahn_parameters::fault::FaultId;
 use bahn_tnc::{AxisWatch, ChannelView};
 
-use super::rule::{Rule, Violation};
+use crate::torture::rule::{Rule, Violation};
 
 /// Rounding of positions and speeds.
 const EPSILON: f64 = 1e-6;

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use bahn_parameters::fault::{FaultId, Reaction};
 use bahn_tnc::{AxisWatch, Control, Message, Shown};
 
-use super::catalogue::Kind;
-use super::plan::Happening;
-use super::rule::{Rule, Violation};
+use crate::torture::catalogue::Kind;
+use crate::torture::plan::Happening;
+use crate::torture::rule::{Rule, Violation};
 
 /// From the relay to the message: the longest drop-out of a sound one and a contour cycle, µs.
 const EMERGENCY_US: u64 = 60_000;

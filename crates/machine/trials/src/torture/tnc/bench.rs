@@ -7,8 +7,10 @@ use bahn_program::Program;
 use bahn_reader::{Reader, Start};
 use bahn_tnc::{Message, Programs};
 
-use super::contour::Contour;
+use super::catalogue::start_keys;
 use super::led::Led;
+use crate::torture::contour::Contour;
+use crate::torture::family::Refused;
 use bahn_host::Next;
 use bahn_host::PowerOn;
 use bahn_host::Saved;
@@ -26,25 +28,11 @@ const LONGEST_US: u64 = 1_800_000_000;
 /// Whoever waits longer for one acknowledgement of the PLC waits for what is not there, a positioning module say, µs.
 const PATIENCE_US: u64 = 300_000_000;
 
-/// Why a program cannot be tried.
-pub(super) enum Refused {
-    /// What belongs to this machine is not there: the PLC never acknowledges what it says.
-    Waits(String),
-    /// The files, or the program itself.
-    Fails(HostError),
-}
-
-impl From<HostError> for Refused {
-    fn from(error: HostError) -> Refused {
-        Refused::Fails(error)
-    }
-}
-
 /// A machine on which plans are tried, with moments of an undisturbed run.
-pub(super) struct Bench {
-    /// The program of the first channel, by its place among those of the campaign.
-    pub number: usize,
+pub(super) struct TncBench {
     pub host: Host,
+    /// NC start of each channel.
+    pub start_keys: Vec<String>,
     pub moments: Vec<Saved<Machine>>,
     /// The contour of each channel.
     pub contours: Vec<Contour>,
@@ -56,16 +44,16 @@ pub(super) struct Bench {
     pub programs: Vec<Option<String>>,
 }
 
-impl Bench {
+impl TncBench {
     /// Runs a program of the machine to its end, the other channels those of their own.
     ///
     /// # Errors
     /// When it does not come to its end by itself.
-    pub fn new(machine: &LoadedMachine, number: usize, program: &str) -> Result<Bench, Refused> {
+    pub fn new(machine: &LoadedMachine, program: &str) -> Result<TncBench, Refused> {
         let mut host = host(machine, program)?;
         host.keep_path();
-        let mut bench = Bench {
-            number,
+        let mut bench = TncBench {
+            start_keys: start_keys(machine),
             contours: (0..host.control().channels())
                 .map(|_| Contour::default())
                 .collect(),

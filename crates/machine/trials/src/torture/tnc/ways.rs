@@ -7,7 +7,7 @@ use bahn_path::OverrideLaw;
 use bahn_tnc::{AxisWatch, ChannelView, RunState, Signal};
 
 use super::axes::{Braking, Moment};
-use super::rule::{Rule, Violation};
+use crate::torture::rule::{Rule, Violation};
 
 /// Contour cycles at full speed that are left to a ramp beside its own way: the one in which it is wanted, the one that is
 /// interpolated already, and that of the table.

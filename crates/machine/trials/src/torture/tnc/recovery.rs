@@ -4,10 +4,10 @@
 use bahn_exchange::signal;
 use bahn_tnc::{Mode, RunState, Signal};
 
-use super::catalogue::Kind;
+use super::course::Course;
 use super::messages::is_fatal;
-use super::rule::{Rule, Violation};
-use super::trial::Course;
+use crate::torture::catalogue::Kind;
+use crate::torture::rule::{Rule, Violation};
 
 /// An operator presses START again when so long after it nothing moves: the PLC may have held it, as the mill does until the
 /// tool is clamped, µs.
@@ -173,7 +173,7 @@ impl Course<'_> {
     }
 
     fn press_start(&mut self, number: usize) -> Result<(), Violation> {
-        let keys = &self.catalogue.start_keys;
+        let keys = &self.bench.start_keys;
         let key = keys.get(number).cloned().unwrap_or_default();
         self.give(Kind::Use, &format!("key {key} tap"))
     }

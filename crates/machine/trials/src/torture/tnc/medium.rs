@@ -6,7 +6,7 @@ use std::io;
 use bahn_exchange::{Exchange, Image, MemoryStorage, Retention, RetentionError, RetentionStorage};
 use bahn_tnc::{Control, Remembered};
 
-use super::dice::Dice;
+use crate::torture::dice::Dice;
 use bahn_host::{read_remembered, write_remembered};
 
 /// The longest piece of a journal in which a failure is tried, bytes.
