@@ -187,7 +187,7 @@ fn magazine() -> Campaign {
 
 #[test]
 fn the_mill_with_its_magazine_keeps_every_rule() {
-    try_campaign("mill with its magazine", &magazine(), 0..250);
+    try_campaign("mill with its magazine", &magazine(), 0..250, 6);
 }
 
 /// Power-off in a tool change, and another mode before the reference run: the PLC holds START until the tool is clamped, and the
