@@ -1,4 +1,7 @@
 //! What the control says of itself: positions, states and the block that is executed, in each interpolation cycle.
+//!
+//! Decision: When a program does not run any more, at its end, at a stop, in single block, P8684 and P8704 become 0: the next start is
+//! asked for and given anew
 
 use bahn_kernel::{AxisUnit, RunState};
 use bahn_path::{Curve, Direction, FeedRate};
@@ -66,6 +69,12 @@ fn show_channel(machine: &mut Machine, k: usize) {
         RunState::Idle | RunState::Running => 2,
         RunState::Interrupted | RunState::Stopped | RunState::BlockEnd => 1,
     };
+    // A program that does not run any more waits for another start.
+    if state != 2 && memory.of_channel(number, ChannelParameter::ProgramState).whole() == Some(2) {
+        for parameter in [ChannelParameter::StartRequest, ChannelParameter::Start] {
+            memory.set_channel(number, parameter, 0);
+        }
+    }
     memory.set_channel(number, ChannelParameter::ProgramState, state);
     memory.set_channel(number, ChannelParameter::AllReferenced, i64::from(referenced));
     let mut speed = channel.run.track.speed_mm_s() * 60.0;

@@ -211,7 +211,7 @@ fn an_emergency_program_that_is_not_there_is_said() {
     rig.start(1, &[Line::to(&[(Axis::X, 300.0)], 3000.0)]);
     rig.until(|rig| rig.read("P12151") > 50.0);
     rig.plc("P8712", "1");
-    rig.until_end(1);
+    rig.until(|rig| rig.read("P8685") == 0.0);
     let x = rig.read("P12151");
     assert!((50.0..60.0).contains(&x), "{x}");
     let said: Vec<String> = rig.control.pending_messages(1).map(ToString::to_string).collect();
