@@ -5,9 +5,9 @@ use std::sync::Arc;
 use bahn_parameters::{ControlModel, ParameterList, PerPlcAxis};
 use bahn_plc::{
     CompensationSize, CoordinateKind, DataInterface, HostLink, LineFault, NcInterfaces, NcMemory, NcMotion,
-    NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault, PlcAxisCommand,
-    PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem, TableFile,
-    TableKind, TextFile, ToolCallBlock, WindowView,
+    NcParameters, NcScreen, NcStatus, NotSaved, PalletLine, ParameterFault, ParameterFileFault,
+    PlcAxisCommand, PlcAxisStatus, PlcWindow, SpindleOrientation, SpindlePosition, StatusChange, StatusItem,
+    TableFile, TableKind, TextFile, ToolCallBlock, WindowView,
 };
 
 /// A control without modules.

@@ -141,13 +141,21 @@ impl Window900 {
 
     /// After a scan: what the PLC has changed goes to the parameters, and does what it says.
     pub(crate) fn take(&mut self, machine: &mut Machine, exchange: &Exchange) {
-        for entry in self.bits.iter_mut().filter(|entry| entry.marker.direction != Direction::ToPlc) {
+        for entry in self
+            .bits
+            .iter_mut()
+            .filter(|entry| entry.marker.direction != Direction::ToPlc)
+        {
             let is_on = exchange.nc().bit(entry.at);
             if is_on != std::mem::replace(&mut entry.last, is_on) {
                 write_marker(machine, &entry.marker, is_on);
             }
         }
-        for entry in self.numbers.iter_mut().filter(|entry| entry.direction != Direction::ToPlc) {
+        for entry in self
+            .numbers
+            .iter_mut()
+            .filter(|entry| entry.direction != Direction::ToPlc)
+        {
             let number = exchange.nc().number(entry.at);
             if number != std::mem::replace(&mut entry.last, number) {
                 machine.memory.store_mantissa(entry.place, number);

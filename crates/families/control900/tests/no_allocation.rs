@@ -51,9 +51,12 @@ fn cycles_with_a_plc_program_allocate_nothing() {
     let file = DataFile::read(text.as_bytes());
     let memory = file.memory();
     // The release follows the marker of M6; a double word counts the cycles.
-    let source = "       L     M406\n       = M305\n       L     D200\n       +     K+1\n       = D200\n       EM\n";
+    let source =
+        "       L     M406\n       = M305\n       L     D200\n       +     K+1\n       = D200\n       EM\n";
     let files = MemoryFiles::from([("MAIN.PLC", source)]);
-    let program = Compilation::compile(&files, "MAIN.PLC", Options::default()).program.unwrap();
+    let program = Compilation::compile(&files, "MAIN.PLC", Options::default())
+        .program
+        .unwrap();
     let counter = memory.place("P500".parse().unwrap()).unwrap();
     let window = Window900::default()
         .marker(memory.marker("SAFREK1").unwrap(), "M305".parse().unwrap())

@@ -171,7 +171,9 @@ pub(crate) fn axis_letters(numbered: bool) -> &'static str {
 /// The letter of `[axis.X]`.
 fn letter(name: &str, section: &Section) -> Option<char> {
     let known = axis_letters(section.reader.numbered);
-    let letter = known.chars().find(|letter| name.len() == 1 && name.starts_with(*letter));
+    let letter = known
+        .chars()
+        .find(|letter| name.len() == 1 && name.starts_with(*letter));
     if letter.is_none() {
         let known: Vec<String> = known.chars().map(String::from).collect();
         section.fault(format!("`{name}` is no axis: {}", known.join(" ")));
@@ -218,7 +220,9 @@ impl Amplifier {
                 early: 0.5,
             };
         }
-        let speed = section.needed_number("speed", 1.0..=1e6) / 60.0;
+        // A spindle that is an axis turns with millions of degrees in a minute.
+        let most = if section.reader.numbered { 1e8 } else { 1e6 };
+        let speed = section.needed_number("speed", 1.0..=most) / 60.0;
         let volts = section.needed_number("volts", 0.1..=10.0);
         let turn = if section.flag("reversed").unwrap_or(false) {
             -1.0

@@ -121,11 +121,18 @@ impl Folder900 {
             },
             state: root.text("state").unwrap_or("state").to_owned(),
             plc: plc(&root),
-            window: root.texts("window").into_iter().map(|said| at(&reader, said)).collect(),
+            window: root
+                .texts("window")
+                .into_iter()
+                .map(|said| at(&reader, said))
+                .collect(),
             answers: answers(&reader, &root),
         };
         if folder.plc.is_none() && !folder.window.is_empty() {
-            root.fault_at("window", "a window is one of a PLC program: `plc` names none".to_owned());
+            root.fault_at(
+                "window",
+                "a window is one of a PLC program: `plc` names none".to_owned(),
+            );
         }
         root.finish();
         (folder, reader.faults())

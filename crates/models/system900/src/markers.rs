@@ -16,8 +16,8 @@ use std::sync::LazyLock;
 use crate::memory::{Memory, Place, SpaceError};
 use crate::name::{Name, repeated};
 use crate::numbers::{
-    AXES, AXIS, AXIS_BLOCK, CHANNELS_MAX, COUPLING_BLOCK, COUPLINGS, COUPLINGS_MAX, FIXED, FIXED_COUNT, SHARED,
-    SPINDLES,
+    AXES, AXIS, AXIS_BLOCK, CHANNELS_MAX, COUPLING_BLOCK, COUPLINGS, COUPLINGS_MAX, FIXED, FIXED_COUNT,
+    SHARED, SPINDLES,
 };
 use crate::table::row;
 
@@ -237,16 +237,26 @@ mod tests {
         for line in lines() {
             let name = format!("{}2", line.stem());
             let marker = memory.marker(&name).unwrap();
-            assert_eq!((marker.part, marker.direction), (line.part, line.direction), "{name}");
+            assert_eq!(
+                (marker.part, marker.direction),
+                (line.part, line.direction),
+                "{name}"
+            );
             let first = memory.marker(line.name).unwrap();
             assert_eq!(first.part, line.part, "{}", line.name);
             assert_ne!(first.place, marker.place, "{name}");
         }
         let said = |name: &str| memory.marker(name).map_err(|error| error.to_string());
-        assert_eq!(said("REPO+12").map(|marker| marker.place), Ok(Place::Q(2000 + 11 * 200 + 130)));
+        assert_eq!(
+            said("REPO+12").map(|marker| marker.place),
+            Ok(Place::Q(2000 + 11 * 200 + 130))
+        );
         assert_eq!(said("SLOP212").map(|marker| marker.part), Ok(MarkerPart::Byte(1)));
         assert_eq!(said("SPIRE3").map(|marker| marker.place), Ok(Place::Q(1650 + 40)));
-        assert_eq!(said("KOPSYN2").map(|marker| marker.place), Ok(Place::Q(1495 + 20)));
+        assert_eq!(
+            said("KOPSYN2").map(|marker| marker.place),
+            Ok(Place::Q(1495 + 20))
+        );
         assert_eq!(
             said("SAFREK3"),
             Err("`SAFREK3`: there is no channel 3, they are 1 to 2".to_owned())
@@ -255,7 +265,10 @@ mod tests {
             said("REF33"),
             Err("`REF33`: there is no physical axis 33, they are 1 to 32".to_owned())
         );
-        assert_eq!(said("LUCK1"), Err("`LUCK1` is no marker of the PLC and no parameter".to_owned()));
+        assert_eq!(
+            said("LUCK1"),
+            Err("`LUCK1` is no marker of the PLC and no parameter".to_owned())
+        );
     }
 
     #[test]

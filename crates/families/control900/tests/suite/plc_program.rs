@@ -117,7 +117,14 @@ fn the_program_is_the_plc() {
 #[test]
 fn markers_of_axes_are_bytes() {
     let mut rig = on("", "       L     M313\n       = M314\n", |window| window);
-    assert_eq!(rig.control.memory().cell("q2330".parse().unwrap()).unwrap().bits(), None);
+    assert_eq!(
+        rig.control
+            .memory()
+            .cell("q2330".parse().unwrap())
+            .unwrap()
+            .bits(),
+        None
+    );
     rig.start(1, &far());
     rig.seconds(0.1);
     let bits = |rig: &Rig, name: &str| rig.control.memory().cell(name.parse().unwrap()).unwrap().bits();
@@ -131,7 +138,8 @@ fn markers_of_axes_are_bytes() {
 /// A double word holds the integer of the number: 12.5 with one decimal is 125, and 126 is 12.6. Whoever wrote last counts.
 #[test]
 fn a_parameter_is_the_integer_of_its_number() {
-    let program = "       L     I5\n       IFT\n       L     D208\n       +     K+1\n       = D208\n       ENDI\n";
+    let program =
+        "       L     I5\n       IFT\n       L     D208\n       +     K+1\n       = D208\n       ENDI\n";
     let mut rig = on("P500: 12.5\n", program, |window| window);
     let word = |rig: &Rig| rig.control.plc().unwrap().plc().number("D208".parse().unwrap());
     assert_eq!(word(&rig), 125);
@@ -156,7 +164,9 @@ fn m_functions_have_markers() {
                    \x20      L     M406\n       IFT\n       L     W12\n       +     K+1\n       = W12\n       ENDI\n\
                    \x20      L     M406\n       A     I6\n       = M305\n";
     let mut rig = on(data, program, |window| {
-        window.function(1, 6, "M406".parse().unwrap()).function(1, 8, "M408".parse().unwrap())
+        window
+            .function(1, 6, "M406".parse().unwrap())
+            .function(1, 8, "M408".parse().unwrap())
     });
     let to = |x: f64| Line::to(&[(Axis::X, x)], 6000.0);
     let lines = [
@@ -178,7 +188,11 @@ fn m_functions_have_markers() {
     let transfer = *rig.control.transfers().last().unwrap();
     assert!(transfer.m == 6 && transfer.ack_us.is_some(), "{transfer:?}");
     rig.seconds(0.1);
-    assert_eq!(rig.read("P8706"), 0.0, "the release is taken back with the marker");
+    assert_eq!(
+        rig.read("P8706"),
+        0.0,
+        "the release is taken back with the marker"
+    );
 }
 
 /// What the operator gives beside the PLC, as a script does, is seen by it.
@@ -195,7 +209,9 @@ fn the_operator_may_be_the_plc_too() {
 /// An error of the program stops it: a scan without end, with its place; the circuit opens.
 #[test]
 fn an_error_of_the_program_stops_all() {
-    let mut rig = on("", "LBL WAIT\n       L     I7\n       JPT   WAIT\n", |window| window);
+    let mut rig = on("", "LBL WAIT\n       L     I7\n       JPT   WAIT\n", |window| {
+        window
+    });
     rig.start(1, &far());
     rig.plant.ideal.inputs[7] = true;
     rig.until(|rig| !rig.control.messages().is_empty());

@@ -85,6 +85,16 @@ impl Machine900 {
         }
     }
 
+    /// The main file of the PLC program of a folder, whatever else is wrong there; `None` without one.
+    ///
+    /// # Errors
+    /// When there is no `machine.toml`.
+    pub fn plc_file(root: &Path) -> Result<Option<PathBuf>, HostError> {
+        let text = decode(&files::read_description(&root.join(Folder900::FILE))?);
+        let (folder, _) = Folder900::read(&text);
+        Ok(folder.plc.map(|plc| root.join(plc.text)))
+    }
+
     /// The folder of its part programs and cycles.
     pub fn programs(&self) -> PathBuf {
         self.root.join(&self.folder.programs)

@@ -61,7 +61,9 @@ pub(super) fn load(
     let Some(program) = source.compilation.program.take() else {
         return Found { plc: None, warnings };
     };
-    let of_a_tnc = foreign(&program).into_iter().chain(contradictions(&program, &given));
+    let of_a_tnc = foreign(&program)
+        .into_iter()
+        .chain(contradictions(&program, &given));
     let folder = path.parent().unwrap_or(root);
     faults.extend(of_a_tnc.map(|(instruction, message)| placed(&program, folder, instruction, message)));
     let unused = given.iter().filter(|given| !is_used(&program, given));
@@ -80,13 +82,23 @@ pub(super) fn load(
 fn foreign(program: &PlcProgram) -> Vec<(&Instruction, String)> {
     let mut found = Vec::new();
     for instruction in &program.code {
-        if let Op::Call { target: Target::Module(number), .. } | Op::Submit { target: Target::Module(number) } =
-            &instruction.op
+        if let Op::Call {
+            target: Target::Module(number),
+            ..
+        }
+        | Op::Submit {
+            target: Target::Module(number),
+        } = &instruction.op
         {
-            found.push((instruction, format!("module {number} asks a TNC: a System 900 has none")));
+            found.push((
+                instruction,
+                format!("module {number} asks a TNC: a System 900 has none"),
+            ));
         }
         for (subject, _) in accesses(&instruction.op) {
-            let Subject::Bit { bit, .. } = subject else { continue };
+            let Subject::Bit { bit, .. } = subject else {
+                continue;
+            };
             let message = match bit.area() {
                 BitArea::T | BitArea::C => format!(
                     "{bit}: timers and counters have their presets in machine parameters of a TNC; count the cycles in a word"
@@ -101,7 +113,10 @@ fn foreign(program: &PlcProgram) -> Vec<(&Instruction, String)> {
     }
     for target in program.cases.iter().flatten() {
         if let (Target::Module(number), Some(first)) = (target, program.code.first()) {
-            found.push((first, format!("module {number} asks a TNC: a System 900 has none")));
+            found.push((
+                first,
+                format!("module {number} asks a TNC: a System 900 has none"),
+            ));
         }
     }
     found
@@ -122,9 +137,14 @@ fn contradictions<'p>(program: &'p PlcProgram, given: &[Given]) -> Vec<(&'p Inst
     for instruction in &program.code {
         for (subject, access) in accesses(&instruction.op) {
             let sets = access != Access::Read && !subject.is_indexed();
-            let of = given.iter().find(|given| sets && given.by_control && given.subject.meets(subject));
+            let of = given
+                .iter()
+                .find(|given| sets && given.by_control && given.subject.meets(subject));
             if let Some(of) = of {
-                let message = format!("{subject} is {}, which the control gives: the PLC reads it alone", of.name);
+                let message = format!(
+                    "{subject} is {}, which the control gives: the PLC reads it alone",
+                    of.name
+                );
                 found.push((instruction, message));
             }
         }

@@ -148,7 +148,10 @@ impl Reading<'_> {
         let Some(bit) = bit else {
             self.fault(
                 entry.operand.1,
-                format!("`{text}` is no marker of the PLC: {} stands at one, M0 to M1999", entry.name.0),
+                format!(
+                    "`{text}` is no marker of the PLC: {} stands at one, M0 to M1999",
+                    entry.name.0
+                ),
             );
             return None;
         };
@@ -166,14 +169,24 @@ impl Reading<'_> {
         if number.is_none() {
             self.fault(
                 entry.operand.1,
-                format!("`{text}` is no double word of the PLC: {} stands at one, D0 to D1020", entry.name.0),
+                format!(
+                    "`{text}` is no double word of the PLC: {} stands at one, D0 to D1020",
+                    entry.name.0
+                ),
             );
         }
         number
     }
 
     /// Notes what stands where; `false` when something else stands there, or it stands elsewhere, which is said.
-    fn takes(&mut self, entry: &Entry, name: String, subject: Subject, by_control: bool, of_range: bool) -> bool {
+    fn takes(
+        &mut self,
+        entry: &Entry,
+        name: String,
+        subject: Subject,
+        by_control: bool,
+        of_range: bool,
+    ) -> bool {
         if let Some(other) = self.given.iter().find(|other| other.name == name) {
             let message = format!("{name} stands in the window already, at {}", other.subject);
             self.fault(entry.name.1, message);
@@ -205,17 +218,23 @@ impl Reading<'_> {
             }
             return;
         }
-        let Some(at) = self.bit(entry, entry.operand.0) else { return };
+        let Some(at) = self.bit(entry, entry.operand.0) else {
+            return;
+        };
         if self.takes(entry, name, bit_subject(at), by_control, false) {
             self.window = std::mem::take(&mut self.window).marker(marker, at);
         }
     }
 
     fn functions(&mut self, entry: &Entry, channel: u8, all: std::ops::RangeInclusive<u16>) {
-        let Some(first) = self.bit(entry, entry.operand.0) else { return };
+        let Some(first) = self.bit(entry, entry.operand.0) else {
+            return;
+        };
         let of_range = all.start() != all.end();
         for (m, number) in all.zip(first.number()..) {
-            let Some(at) = self.bit(entry, &format!("M{number}")) else { return };
+            let Some(at) = self.bit(entry, &format!("M{number}")) else {
+                return;
+            };
             let name = match channel {
                 1 => format!("M function {m}"),
                 channel => format!("M function {m} of channel {channel}"),
@@ -230,7 +249,10 @@ impl Reading<'_> {
     fn parameters(&mut self, entry: &Entry, names: &[Name]) {
         let Some(first) = self.double(entry) else { return };
         let of_range = names.len() > 1;
-        for (name, address) in names.iter().zip((first.address()..).step_by(usize::from(Size::Double.bytes()))) {
+        for (name, address) in names
+            .iter()
+            .zip((first.address()..).step_by(usize::from(Size::Double.bytes())))
+        {
             let Some(at) = Number::new(Size::Double, address) else {
                 return self.fault(
                     entry.operand.1,
@@ -288,7 +310,9 @@ fn range(first: Name, last: Name) -> Result<Vec<Name>, String> {
     const MOST: u32 = 256;
     match numbers.end().checked_sub(*numbers.start()) {
         Some(count) if count < MOST => Ok(numbers.map(of).collect()),
-        Some(_) => Err(format!("{first} to {last} are more than the {MOST} double words of the PLC")),
+        Some(_) => Err(format!(
+            "{first} to {last} are more than the {MOST} double words of the PLC"
+        )),
         None => Err(format!("{first} comes after {last}")),
     }
 }
