@@ -80,6 +80,16 @@ pub const MODULE_TNC360: ShippedMachine = machine!("module-tnc360" for "tnc360":
     "scripts/refused.txt",
 );
 
+/// A portal with two heads on one beam; its control is a System 900. It is a start where it is asked for by its name.
+pub const PORTAL900: ShippedMachine = machine!("portal900" for "system900":
+    "README.md", "machine.toml", "parameters.q", "plant.toml", "plc/MAIN.PLC",
+    "programs/P1000.900", "programs/P2000.900", "programs/P9002.900", "programs/Z6.900", "programs/Z100.900",
+    "programs/Z234.900", "scripts/stop.txt", "scripts/again.txt", "scripts/emergency.txt", "scripts/lock.txt",
+);
+
+/// Those with a System 900; each is a start where it is asked for by its name.
+pub const SYSTEM900: [ShippedMachine; 1] = [PORTAL900];
+
 /// Those that run by themselves; the first one that has a model is the start for it.
 pub const ALL: [ShippedMachine; 6] = [MILL, MILL_TNC360, MILL_TNC155, DIG425, TWIN, GANTRY];
 
@@ -113,7 +123,7 @@ mod tests {
             }
         }
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        for machine in ALL.into_iter().chain(MODULES) {
+        for machine in ALL.into_iter().chain(MODULES).chain(SYSTEM900) {
             let mut found = Vec::new();
             files(&root.join(machine.name), "", &mut found);
             found.sort();

@@ -103,7 +103,8 @@ P11053: $00252500 $30000001       ; M14, M13 spindle with coolant
 P11054: $0500000D $30000001       ; M19 oriented stop; M16 tool data alone
 P11057: $000E0000 $30000001       ; M30 end
 P11065: $00000010 $30000001       ; M60 branches when the probe has touched: M60.300
-P11070: $00000505 $30000001       ; M81, M80 beam: ask for the shared part, leave it
+P11066: $000D0000 $30000001       ; M66 the tool is changed, in cycle Z6
+P11070: $00000505 $30000001       ; M81, M80 beam: leave the shared part, ask for it
 P11075: $00000040 $30000001       ; M100 calls cycle Z100, which cleans the spindle nose
 
 ; ------------------------------------------------------------------ keys and locks

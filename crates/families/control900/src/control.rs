@@ -1,5 +1,6 @@
 //! A System 900: its parameters, its channels, and the clock that moves them.
 
+use bahn_exchange::Exchange;
 use bahn_kernel::{Clock, Feeder, RunState};
 use bahn_path::{BlockRef, PathElement};
 use bahn_reader::{Reader, Warning};
@@ -12,6 +13,7 @@ use crate::channel::{Channel, Mode};
 use crate::language::Language;
 use crate::machine::Machine;
 use crate::message::{Kind, Message};
+use crate::plc_run::PlcRun;
 use crate::setup::Setup;
 use crate::transfer::Transfer;
 use crate::{branch, command, monitor, status};
@@ -175,6 +177,11 @@ impl Control900 {
     /// What was recorded of keys, messages, transfers and blocks [002:6064-6198].
     pub fn events(&self) -> &EventBuffer {
         self.machine.traffic.events()
+    }
+
+    /// The memory of the PLC; `None` without a program.
+    pub fn plc(&self) -> Option<&Exchange> {
+        self.machine.plc.as_deref().map(PlcRun::exchange)
     }
 
     /// All parameters as they are now.

@@ -9,7 +9,7 @@ use bahn_system900::{ChannelParameter, Event, Place, Writer};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, command, coupling, enable, hand, plc};
+use crate::{branch, command, coupling, enable, hand, plc, plc_run};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -31,8 +31,9 @@ impl Family for Machine {
         now_us >= self.scan_us
     }
 
-    fn scan(&mut self, _: &Measured, _: &mut Commands) {
+    fn scan(&mut self, measured: &Measured, commands: &mut Commands) {
         self.scan_us = self.now_us + self.plc_us;
+        plc_run::scan(self, measured, commands);
         plc::answer(self);
     }
 
@@ -45,7 +46,7 @@ impl Family for Machine {
     fn circuit_order(&mut self) -> CircuitOrder {
         match self.core.emergency.circuit() {
             Circuit::Ready if !self.core.loops_closed => CircuitOrder::CloseLoops,
-            Circuit::EmergencyStop => CircuitOrder::Stop,
+            Circuit::EmergencyStop | Circuit::Defective => CircuitOrder::Stop,
             _ => CircuitOrder::Nothing,
         }
     }

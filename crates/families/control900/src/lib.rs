@@ -4,7 +4,7 @@
 //! a parameter does while the machine runs.
 //!
 //! - [`Control900`] is the control: parameters in, programs in, cycles on a machine;
-//! - [`Setup`] says what answers in the place of a PLC: [`StandardAnswers`];
+//! - [`Setup`] says which PLC program runs, [`Plc900`] with its [`Window900`], or what answers in its place: [`StandardAnswers`];
 //! - [`Transfer`]s are M functions on their way to the PLC, [`Message`]s what the control says;
 //! - [`AxisView`] is an axis as it is moved; [`ideal_machine`] is a machine of which nothing is known but its parameters.
 //!
@@ -47,6 +47,9 @@ mod machine;
 mod message;
 mod monitor;
 mod plc;
+mod plc_modules;
+mod plc_run;
+mod plc_window;
 mod positions;
 mod setup;
 mod status;
@@ -58,6 +61,8 @@ pub use channel::Mode;
 pub use control::Control900;
 pub use language::{Language, Open, language};
 pub use message::{Kind, Message};
+pub use plc_run::Plc900;
+pub use plc_window::Window900;
 pub use setup::{Setup, StandardAnswers};
 pub use transfer::{Transfer, When};
 pub use units::{cycle_us, ideal_machine, path_limits};

@@ -10,6 +10,7 @@ use crate::axis_state::{AxisPlace, Hand, Watch};
 use crate::channel::{Channel, Site, Written};
 use crate::language::Language;
 use crate::message::{Kind, Message, Messages};
+use crate::plc_run::PlcRun;
 use crate::setup::Setup;
 use crate::transfer::Transfers;
 use crate::units;
@@ -41,6 +42,8 @@ pub(crate) struct Machine {
     pub written: Written,
     pub language: Option<Language>,
     pub answers: Answers,
+    /// The PLC program; away while it scans.
+    pub plc: Option<Box<PlcRun>>,
     pub now_us: u64,
     pub plc_us: u64,
     /// When the PLC is due.
@@ -81,6 +84,7 @@ impl Machine {
             written: Written::default(),
             language: setup.language,
             answers: Answers::new(setup.answers),
+            plc: setup.plc.map(|plc| Box::new(PlcRun::new(plc))),
             now_us: 0,
             plc_us: u64::from(setup.plc_us.max(1)),
             scan_us: 0,

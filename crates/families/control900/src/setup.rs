@@ -1,6 +1,7 @@
 //! What a control is told beside its parameters.
 
 use crate::language::{Language, language};
+use crate::plc_run::Plc900;
 
 /// What answers in the place of a PLC, one PLC cycle after its cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,12 +44,14 @@ impl StandardAnswers {
 }
 
 /// What a control is told beside its parameters.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Setup {
     /// What answers in the place of a PLC.
     pub answers: StandardAnswers,
     /// The cycle of the PLC, µs.
     pub plc_us: u32,
+    /// Its PLC program; `None` where nothing but the answers stands there.
+    pub plc: Option<Plc900>,
     /// The language of its programs; without one they see no parameters.
     pub language: Option<Language>,
 }
@@ -59,6 +62,7 @@ impl Default for Setup {
         Setup {
             answers: StandardAnswers::ALL,
             plc_us: 10_000,
+            plc: None,
             language: Some(language()),
         }
     }

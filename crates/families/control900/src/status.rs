@@ -1,4 +1,7 @@
 //! What the control says of itself: positions, states and the block that is executed, in each interpolation cycle.
+//!
+//! Decision: When a program does not run any more, at its end, at a stop, in single block, P8684 and P8704 become 0: the next start is
+//! asked for and given anew
 
 use bahn_kernel::{AxisUnit, RunState};
 use bahn_path::{Curve, Direction, FeedRate};
@@ -57,6 +60,12 @@ fn show_state(machine: &mut Machine, k: usize) -> i64 {
     let before = machine.memory.of_channel(number, ChannelParameter::ProgramState);
     if before.whole() != Some(state) {
         machine.send(number, ChannelParameter::ProgramState, state, Writer::Control);
+    }
+    // A program that does not run any more waits for another start.
+    if state != 2 && before.whole() == Some(2) {
+        for parameter in [ChannelParameter::StartRequest, ChannelParameter::Start] {
+            machine.memory.set_channel(number, parameter, 0);
+        }
     }
     state
 }

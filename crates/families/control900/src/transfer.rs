@@ -88,6 +88,12 @@ impl Transfers {
         self.list.len() as u64 + self.dropped
     }
 
+    /// Those that went out after there were so many, as far as they are kept.
+    pub fn since(&self, count: u64) -> impl Iterator<Item = &Transfer> {
+        let new = usize::try_from(self.count().saturating_sub(count)).unwrap_or(KEPT);
+        self.list.iter().skip(self.list.len().saturating_sub(new))
+    }
+
     /// Those of a channel that wait are acknowledged.
     pub fn acknowledge(&mut self, channel: u8, now_us: u64) {
         let own = self

@@ -1,6 +1,6 @@
 //! Doing what events say: the hands of the operator, and what breaks.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, DriveFault};
 use crate::device::DeviceFault;
 use crate::encoder::EncoderFault;
 use crate::event::{Event, EventError, Fault, KeyAction, Put, input_number};
@@ -122,13 +122,16 @@ impl Machine {
             .ok_or_else(|| no("part", "magazine", std::iter::empty()))
     }
 
-    /// Axes of a described machine have letters.
-    fn no_physical_axis(&self, number: u8) -> EventError {
-        EventError::Name {
+    /// The letter of a physical axis of a System 900; axes of a TNC have letters alone.
+    fn physical_axis(&self, number: u8) -> Result<char, EventError> {
+        let axes = &self.mechanism.axes;
+        let own = |axis: &&Axis| self.numbered && axis.output + 1 == usize::from(number);
+        let found = axes.iter().find(own).map(|axis| axis.letter);
+        found.ok_or_else(|| EventError::Name {
             what: "axis",
             name: number.to_string(),
-            known: self.mechanism.axes.iter().map(|axis| axis.letter).collect(),
-        }
+            known: axes.iter().map(|axis| axis.letter).collect(),
+        })
     }
 
     fn axis_mut(&mut self, letter: char) -> Result<&mut Axis, EventError> {
@@ -162,7 +165,10 @@ impl Machine {
             Fault::Motor(letter) => return self.lose_motor(*letter),
             Fault::Drive('S', kind) => self.spindle_mut()?.fault = Some(*kind),
             Fault::Drive(letter, kind) => self.axis_mut(*letter)?.set_drive_fault(Some(*kind)),
-            Fault::PhysicalDrive(number) => return Err(self.no_physical_axis(*number)),
+            Fault::PhysicalDrive(number) => {
+                let letter = self.physical_axis(*number)?;
+                self.axis_mut(letter)?.set_drive_fault(Some(DriveFault::Dead));
+            }
             Fault::Offset(letter, volts) => self.axis_mut(*letter)?.offset = *volts,
             Fault::Input(input, fault) => {
                 self.plc.stick(*input, *fault);
@@ -273,6 +279,10 @@ impl Machine {
         if let Some(input) = input_number(what) {
             self.plc.loosen(input);
             return Ok(());
+        }
+        if let (true, Ok(number)) = (self.numbered, what.parse()) {
+            let letter = self.physical_axis(number)?;
+            return self.repair_axis(letter);
         }
         match what {
             "relay" => self.chain.fault = None,

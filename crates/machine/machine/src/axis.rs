@@ -159,14 +159,35 @@ impl Cam {
     }
 }
 
+/// The letters of axes, without blanks; a machine with a System 900 has up to 32 axes, and S is the spindle of events.
+const LETTERS: [&str; 2] = ["XYZABCUVW", "XYZABCUVWDEFGHIJKLMNOPQRT"];
+
+/// Those that axes may have, on a machine with a System 900 or another one.
+pub(crate) fn axis_letters(numbered: bool) -> &'static str {
+    let [few, many] = LETTERS;
+    if numbered { many } else { few }
+}
+
 /// The letter of `[axis.X]`.
 fn letter(name: &str, section: &Section) -> Option<char> {
-    let mut letters = "XYZABCUVW".chars();
-    let letter = letters.find(|letter| name.len() == 1 && name.starts_with(*letter));
+    let known = axis_letters(section.reader.numbered);
+    let letter = known
+        .chars()
+        .find(|letter| name.len() == 1 && name.starts_with(*letter));
     if letter.is_none() {
-        section.fault(format!("`{name}` is no axis: X Y Z A B C U V W"));
+        let known: Vec<String> = known.chars().map(String::from).collect();
+        section.fault(format!("`{name}` is no axis: {}", known.join(" ")));
     }
     letter
+}
+
+/// Whether an axis turns: A, B and C do, and on a machine with a System 900 what says so.
+fn turns(letter: char, section: &Section) -> bool {
+    let usual = matches!(letter, 'A' | 'B' | 'C');
+    match section.reader.numbered {
+        true => section.flag("turns").unwrap_or(usual),
+        false => usual,
+    }
 }
 
 /// The place of the nominal value output of an axis.
@@ -199,7 +220,9 @@ impl Amplifier {
                 early: 0.5,
             };
         }
-        let speed = section.needed_number("speed", 1.0..=1e6) / 60.0;
+        // A spindle that is an axis turns with millions of degrees in a minute.
+        let most = if section.reader.numbered { 1e8 } else { 1e6 };
+        let speed = section.needed_number("speed", 1.0..=most) / 60.0;
         let volts = section.needed_number("volts", 0.1..=10.0);
         let turn = if section.flag("reversed").unwrap_or(false) {
             -1.0
@@ -248,7 +271,8 @@ impl Axis {
         let letter = letter(name, &section)?;
         let part = u64::from(u32::from(letter));
         // N and kg give m/s², Nm and kg m² give radians/s².
-        let unit = if matches!(letter, 'A' | 'B' | 'C') {
+        let turns = turns(letter, &section);
+        let unit = if turns {
             180.0 / std::f64::consts::PI
         } else {
             1000.0
@@ -259,7 +283,7 @@ impl Axis {
             section.fault_at("start", "start lies outside travel".to_owned());
         }
         let current = section.section("current_drive").map(|table| {
-            let drive = CurrentDrive::read(&table, matches!(letter, 'A' | 'B' | 'C'), step_s);
+            let drive = CurrentDrive::read(&table, turns, step_s);
             table.finish();
             Box::new(drive)
         });

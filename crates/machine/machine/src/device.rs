@@ -2,6 +2,7 @@
 
 use bahn_servo::{INPUTS, OUTPUTS};
 
+use crate::axis::axis_letters;
 use crate::circuit::Circuit;
 use crate::mechanics::DevicePlace;
 use crate::reader::{Coil, Contact, Section};
@@ -59,6 +60,15 @@ pub(crate) struct Device {
     forth: bool,
 }
 
+/// The axis that it clamps; that there is one is looked at when all axes are known.
+fn clamps(section: &Section) -> Option<char> {
+    let known = axis_letters(section.reader.numbered);
+    let words: Vec<String> = known.chars().map(String::from).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let index = section.word("clamps", &words)?;
+    known.chars().nth(index)
+}
+
 impl Device {
     /// A device as the section `[device.NAME]` of the machine file describes it.
     pub fn read(name: String, section: Section) -> Device {
@@ -84,9 +94,7 @@ impl Device {
             circuit: Circuit::read(&section),
             inputs: [section.contact("input_first"), section.contact("input_second")],
             speed: [per_ms("back_ms"), per_ms("forth_ms")],
-            clamps: section
-                .word("clamps", &["X", "Y", "Z", "A", "B", "C", "U", "V", "W"])
-                .and_then(|index| "XYZABCUVW".chars().nth(index)),
+            clamps: clamps(&section),
             fault: None,
             position: if start { 1.0 } else { 0.0 },
             forth: start,

@@ -66,6 +66,14 @@ pub(crate) struct Counter {
     frozen: i64,
 }
 
+/// Counting steps to a signal period.
+///
+/// Decision: A System 900 counts the edges of its encoders, four to a period: P12012 are counts after quadrupling. What a TNC
+/// interpolates within a period it does not see
+fn steps_per_period(counts_edges: bool) -> f64 {
+    if counts_edges { 4.0 } else { Encoder::STEPS as f64 }
+}
+
 impl Counter {
     /// Reads the `encoder` table of an axis; `travel` are the ends, `start` the position at power-on.
     pub fn read(section: &Section, travel: [f64; 2], start: f64, noise: Noise) -> Option<Counter> {
@@ -81,7 +89,7 @@ impl Counter {
         };
         let mut counter = Counter {
             input: input.unwrap_or(0),
-            steps_per_unit: sense * Encoder::STEPS as f64 / period,
+            steps_per_unit: sense * steps_per_period(section.reader.numbered) / period,
             zero: start,
             marks: Vec::new(),
             every: None,

@@ -6,6 +6,7 @@
 use bahn_text::{Diagnostic, Span, path_below};
 
 use crate::MachineFolder;
+use crate::equipment::Said;
 use crate::reader::{Reader, Section};
 
 /// What `machine.toml` in the folder of a machine with a System 900 says. Paths count from the folder; no file is opened here.
@@ -30,6 +31,10 @@ pub struct Folder900 {
     pub plant: Plant900,
     /// Folder of what survives power-off.
     pub state: String,
+    /// The main file of the PLC program, and where it is named; `None` without one.
+    pub plc: Option<Said>,
+    /// Which markers and double words of the PLC are which parameters, as `SAFREK1 = M300`.
+    pub window: Vec<Said>,
     /// What answers in the place of a PLC.
     pub answers: Vec<Answer900>,
 }
@@ -115,8 +120,20 @@ impl Folder900 {
                 file => Plant900::File(file.to_owned()),
             },
             state: root.text("state").unwrap_or("state").to_owned(),
+            plc: plc(&root),
+            window: root
+                .texts("window")
+                .into_iter()
+                .map(|said| at(&reader, said))
+                .collect(),
             answers: answers(&reader, &root),
         };
+        if folder.plc.is_none() && !folder.window.is_empty() {
+            root.fault_at(
+                "window",
+                "a window is one of a PLC program: `plc` names none".to_owned(),
+            );
+        }
         root.finish();
         (folder, reader.faults())
     }
@@ -125,8 +142,29 @@ impl Folder900 {
     pub const FILE: &str = MachineFolder::FILE;
 }
 
-/// All of them where the key is missing.
+fn at(reader: &Reader, (at, text): (usize, &str)) -> Said {
+    Said {
+        span: reader.place(at),
+        text: text.to_owned(),
+    }
+}
+
+/// The main file of the PLC program.
+fn plc(root: &Section) -> Option<Said> {
+    let text = root.text("plc")?;
+    let span = root.place_of("plc");
+    let Some(text) = path_below(text) else {
+        root.fault_at("plc", "`plc` names no file of the folder".to_owned());
+        return None;
+    };
+    Some(Said { span, text })
+}
+
+/// Where the key is missing all of them, and none beside a PLC program.
 fn answers(reader: &Reader, root: &Section) -> Vec<Answer900> {
+    if !root.has("answers") && root.has("plc") {
+        return Vec::new();
+    }
     if !root.has("answers") {
         return Answer900::ALL.map(|(_, answer)| answer).to_vec();
     }

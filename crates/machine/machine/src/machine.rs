@@ -71,6 +71,8 @@ pub struct Machine {
     /// What is wrong with the memory of the control.
     pub(crate) memory: ControlMemory,
     wires: Vec<Wire>,
+    /// Its axes have numbers beside their letters: those of their outputs.
+    pub(crate) numbered: bool,
 }
 
 impl Machine {
@@ -79,7 +81,19 @@ impl Machine {
     /// # Errors
     /// All faults of the description, in its order.
     pub fn from_toml(text: &str) -> Result<Machine, Vec<Diagnostic>> {
-        let reader = Reader::new(text);
+        Machine::described(Reader::new(text))
+    }
+
+    /// The same of a machine with a System 900: output n and encoder Xn are those of physical axis n, its encoders are counted in
+    /// quarters of a period, and an axis has any letter but S and says with `turns` whether it turns.
+    ///
+    /// # Errors
+    /// All faults of the description, in its order.
+    pub fn with_numbered_axes(text: &str) -> Result<Machine, Vec<Diagnostic>> {
+        Machine::described(Reader::new(text).with_numbered_axes())
+    }
+
+    fn described(reader: Reader) -> Result<Machine, Vec<Diagnostic>> {
         let table = reader.parse();
         let mut machine = Machine::read(Section::root(&reader, &table));
         machine.wires = reader.wires();
@@ -129,6 +143,7 @@ impl Machine {
         };
         let index = |letter| mechanism.axes.iter().position(|axis| axis.letter == letter);
         let mut machine = Machine {
+            numbered: root.reader.numbered,
             name: root.text("name").unwrap_or("machine").to_owned(),
             clock: Clock::new(step_us),
             probe_axes: ['X', 'Y', 'Z'].map(index),

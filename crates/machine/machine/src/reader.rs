@@ -70,6 +70,8 @@ const WIRES_MAX: usize = 10_000;
 pub(crate) struct Reader<'t> {
     text: &'t str,
     lines: LineIndex,
+    /// Outputs and encoders are those of physical axes.
+    pub numbered: bool,
     faults: RefCell<Vec<Diagnostic>>,
     /// The inputs given away: where, which, to whom.
     taken: RefCell<Vec<(usize, usize, String)>>,
@@ -83,10 +85,19 @@ impl<'t> Reader<'t> {
         Reader {
             text,
             lines: LineIndex::of(text),
+            numbered: false,
             faults: RefCell::default(),
             taken: RefCell::default(),
             wires: RefCell::default(),
             contacts: RefCell::default(),
+        }
+    }
+
+    /// The description is one of a machine with a System 900: output n and encoder Xn are those of physical axis n.
+    pub fn with_numbered_axes(self) -> Reader<'t> {
+        Reader {
+            numbered: true,
+            ..self
         }
     }
 
@@ -440,6 +451,10 @@ impl<'r, 't> Section<'r, 't> {
     /// A nominal value output: 1 to 5 and S are those of a control, 7 and following those of further channels; its
     /// place among all.
     pub fn output(&self, key: &'static str) -> Option<usize> {
+        if self.reader.numbered {
+            let form = format!("one of 1 to {NOMINALS}, as the physical axis");
+            return self.place(key, |text| connector(text, NOMINALS), &form);
+        }
         let place = |text: &str| match text {
             "S" => Some(SPINDLE),
             _ => connector(text, NOMINALS).filter(|place| *place != SPINDLE),

@@ -10,7 +10,8 @@
 //!   not go together;
 //! - [`Explanation`], [`Mapped`], [`Held`], [`differences`]: what is said of parameters by their names;
 //! - [`ZeroPoints`], [`Tools`], [`MFunction`]: what parameters of a channel say together;
-//! - [`Traffic`]: what goes between a control that runs, its PLC, its panel and its programs, recorded as [`Event`]s.
+//! - [`Traffic`]: what goes between a control that runs, its PLC, its panel and its programs, recorded as [`Event`]s;
+//! - [`Marker`], [`Direction`]: what of them is exchanged with the PLC.
 //!
 //! ```
 //! use bahn_system900::{DataFile, check, row};
@@ -47,6 +48,7 @@ mod lock;
 mod locks;
 mod m_functions;
 mod m_table;
+mod markers;
 mod memory;
 mod messages;
 mod name;
@@ -85,6 +87,7 @@ pub use lock::Lock;
 pub use locks::{Locks, Part, Writer, refusing};
 pub use m_functions::{Acts, M_MAX, MFunction, MRule, m_number};
 pub use m_table::MTable;
+pub use markers::{Direction, Marker, MarkerPart, NoMarker, marker_names};
 pub use memory::{Memory, Place, SpaceError};
 pub use messages::{
     Message, MessageKind, MessageWord, NamedMessage, Pending, acknowledges_with_mode, named_message,

@@ -208,6 +208,12 @@ impl Memory {
         }
     }
 
+    /// Stores the integer of a number, of which the decimals that the parameter has stand after the point.
+    pub fn store_mantissa(&mut self, place: Place, mantissa: i32) {
+        let status = self.at(place).status.loaded(true);
+        self.put(place, Cell { mantissa, status });
+    }
+
     /// Stores bits as they are.
     pub fn store_bits(&mut self, place: Place, bits: i32) {
         let status = self.at(place).status.with_decimals(0).loaded(true);

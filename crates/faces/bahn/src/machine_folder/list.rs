@@ -1,6 +1,6 @@
 //! `bahn machine list`: what a script can speak of.
 
-use bahn_host::Expectation;
+use bahn_host::{Expectation, Machine900};
 use bahn_machine::Event;
 
 use super::load;
@@ -95,6 +95,9 @@ M2045 I4 O2 T48 C0 B8 W260 D356     as the PLC sees it; the column event tells o
 
 /// Prints the names of a machine.
 pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
+    if Machine900::is_meant(&options.folder) {
+        return super::list900::command(&options.folder);
+    }
     let machine = match load(&options.folder)? {
         Ok(machine) => machine,
         Err(faults) => {

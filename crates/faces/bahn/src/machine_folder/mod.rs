@@ -5,6 +5,7 @@
 mod check;
 mod io;
 mod list;
+mod list900;
 mod load;
 mod new;
 mod options;

@@ -24,6 +24,11 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
         .to_string_lossy()
         .into_owned();
     let name = options.name.clone().unwrap_or(own_name);
+    let of_900 = bahn_machines::SYSTEM900.iter();
+    let mut of_900 = of_900.filter(|shipped| options.from.as_deref() == Some(shipped.name));
+    if let Some(shipped) = of_900.next() {
+        return system900(shipped, folder, &name);
+    }
     let model = options.model;
     let (shipped, shipped_model) = shipped_for(model, options.from.as_deref())?;
     let files = shipped
@@ -35,7 +40,7 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
             .replace(shipped_model.name(), model.name())
             .replace("../FOLDER.md", "FOLDER.md");
         let content = match *file {
-            "machine.toml" => description(&text, &name, model),
+            "machine.toml" => description(&text, &name, Some(model)),
             "parameters.mp" => parameters(&text, model),
             "plant.toml" => plant(&text.replace(shipped_model.id(), model.id()), model),
             "README.md" => text.replace(shipped_model.id(), model.id()),
@@ -45,6 +50,35 @@ pub(super) fn command(options: &NewOptions) -> Result<Outcome, UsageError> {
     }
     diagnostics::print_text(&format!(
         "{}: {name}, {model}, {} files; README.md explains them",
+        folder.display(),
+        shipped.files.len() + 1
+    ));
+    Ok(Outcome::Fine)
+}
+
+/// A machine with a System 900 as it is shipped, with another name.
+fn system900(
+    shipped: &bahn_machines::ShippedMachine,
+    folder: &Path,
+    name: &str,
+) -> Result<Outcome, UsageError> {
+    let files = shipped
+        .files
+        .iter()
+        .chain([&("FOLDER.md", bahn_machines::FOLDER)]);
+    for (file, text) in files {
+        let text = text.replace("../FOLDER.md", "FOLDER.md").replace(
+            &format!("machines/{}", shipped.name),
+            &folder.display().to_string(),
+        );
+        let content = match *file {
+            "machine.toml" => description(&text, name, None),
+            _ => text,
+        };
+        write(&folder.join(file), &content)?;
+    }
+    diagnostics::print_text(&format!(
+        "{}: {name}, System 900, {} files; README.md explains them",
         folder.display(),
         shipped.files.len() + 1
     ));
@@ -65,15 +99,15 @@ fn write(path: &Path, content: &str) -> Result<(), UsageError> {
     Ok(file.finish()?)
 }
 
-/// `machine.toml` with another name and model.
-fn description(text: &str, name: &str, model: ControlModel) -> String {
+/// `machine.toml` with another name, and another model where it has one.
+fn description(text: &str, name: &str, model: Option<ControlModel>) -> String {
     let quoted = toml::Value::from(name).to_string();
     // Only the machine as a whole has a name and a model.
     let line = |line: &str| {
         let key = line.split('=').next().map_or("", str::trim);
-        match key {
-            "name" => format!("name = {quoted}\n"),
-            "model" => format!("model = \"{}\"\n", model.id()),
+        match (key, model) {
+            ("name", _) => format!("name = {quoted}\n"),
+            ("model", Some(model)) => format!("model = \"{}\"\n", model.id()),
             _ => format!("{line}\n"),
         }
     };
@@ -114,11 +148,12 @@ fn shipped_for(
         shipped.models.contains(&model.family().id()) && name.is_none_or(|name| shipped.name == name)
     };
     let all = || bahn_machines::ALL.iter().chain(&bahn_machines::MODULES);
+    let listed = || all().chain(&bahn_machines::SYSTEM900);
     let shipped = all().find(is_meant);
     let own = shipped.and_then(|shipped| shipped.models.first()?.parse().ok());
     shipped.copied().zip(own).ok_or_else(|| {
         let named = name.map_or(String::new(), |name| format!(" `{name}`"));
-        let names = all().map(|shipped| format!("{} ({})", shipped.name, shipped.models.join(", ")));
+        let names = listed().map(|shipped| format!("{} ({})", shipped.name, shipped.models.join(", ")));
         UsageError::new(format!(
             "no machine{named} to start from is shipped for the {model}; there are {}",
             names.collect::<Vec<_>>().join(", ")

@@ -37,10 +37,11 @@ Examples:
   bahn run INDEX.H --machine mymill
   bahn machine new mytwin --from twin
   bahn machine new loader --model tnc360 --from module-tnc360
+  bahn machine new myportal --from portal900
 
 Models of the 400 series start from a mill with rotary table and gear spindle, the TNC 360 from a small mill without, TNC 151 and
 TNC 155 from a knee mill with relay cabinet; twin is a portal mill with two channels, module-tnc360 a positioning module that goes
-beside a mill. The README.md in the folder explains every file and key.";
+beside a mill, portal900 a portal with two heads and a System 900. The README.md in the folder explains every file and key.";
 
 const CHECK_EXAMPLES: &str = "\
 Examples:
@@ -85,7 +86,7 @@ pub(crate) struct NewOptions {
     #[arg(long, value_name = "MODEL", default_value_t, ignore_case = true, value_parser = model_parser())]
     pub model: ControlModel,
     /// A shipped machine by its name, instead of the usual one for the model: mill, mill-tnc360, mill-tnc155, dig425,
-    /// twin, gantry.
+    /// twin, gantry, portal900.
     #[arg(long, value_name = "MACHINE")]
     pub from: Option<String>,
     /// Name for people; that of the folder without it.

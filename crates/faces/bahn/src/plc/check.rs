@@ -4,6 +4,7 @@ use bahn_report::plc::Entry;
 
 use super::options::CheckOptions;
 use super::source::Source;
+use crate::diagnostics::Item;
 use crate::options::Format;
 use crate::{Outcome, UsageError, console, diagnostics};
 use bahn_report::count;
@@ -13,8 +14,9 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
     let source = Source::compile(&options.program)?;
     let compilation = &source.compilation;
     let report = Report {
-        ok: compilation.program.is_some(),
+        ok: compilation.program.is_some() && source.of_machine.is_empty(),
         errors: compilation.errors.iter().map(Entry::new).collect(),
+        machine: source.of_machine.iter().map(Item::from).collect(),
         warnings: compilation.warnings.iter().map(Entry::new).collect(),
         not_listed: compilation.not_listed,
         size_bytes: compilation.size_bytes,
@@ -31,7 +33,7 @@ pub(super) fn command(options: &CheckOptions) -> Result<Outcome, UsageError> {
             diagnostics::print_text(&format!(
                 "{}: {}, {}{}, {} bytes, nominal cycle time {:.2} %",
                 options.program.file.display(),
-                count(report.errors.len(), "error"),
+                count(report.errors.len() + report.machine.len(), "error"),
                 count(report.warnings.len(), "warning"),
                 more(report.not_listed),
                 report.size_bytes,
@@ -58,6 +60,9 @@ fn more(not_listed: usize) -> String {
 struct Report {
     ok: bool,
     errors: Vec<Entry>,
+    /// What of the folder of a machine does not go together with it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    machine: Vec<Item>,
     warnings: Vec<Entry>,
     #[serde(skip_serializing_if = "is_zero")]
     not_listed: usize,

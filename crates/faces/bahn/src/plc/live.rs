@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use bahn_host::{Attendance, FolderPrograms, LoadedMachine, Script, Stage};
+use bahn_host::{Attendance, FolderPrograms, LoadedMachine, Machine900, Script, Stage};
 use bahn_parameters::ControlModel;
 use bahn_report::plc::Live;
 
@@ -23,6 +23,12 @@ pub(super) fn live(
         return Err(UsageError::new(
             "--parameters and --strict are of the bench: a folder says what its machine has",
         ));
+    }
+    if Machine900::is_meant(folder) {
+        return Err(UsageError::new(format!(
+            "{} has a System 900: `bahn run` shows its PLC with --signals, and check, list and xref take the folder",
+            folder.display()
+        )));
     }
     let machine = match machine_folder::load(folder)? {
         Ok(machine) => machine,

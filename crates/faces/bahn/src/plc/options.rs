@@ -63,7 +63,7 @@ Examples:
   bahn plc check MAIN.PLC --parameters machine.MP
 
 JSON: ok, errors and warnings (number, file, line, column, message; a thousand of each at most, then also
-not_listed), size_bytes, nominal_percent (100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
+not_listed; of a System 900 also machine, what does not go together with its window), size_bytes, nominal_percent (100 % are 5 ms). Files that the program links with USES lie beside the main file, or in a folder EPROM
 beside it.
 Exit codes: 0 no error, 1 errors, 2 wrong use.";
 
@@ -140,7 +140,8 @@ Examples:
 /// The PLC program and what it is translated for.
 #[derive(Args, Debug)]
 pub(crate) struct ProgramOptions {
-    /// The main file; linked files lie beside it. trace, diagram and watch also take the folder of a machine.
+    /// The main file; linked files lie beside it. trace, diagram and watch also take the folder of a machine, check, list and
+    /// xref that of one with a System 900.
     #[arg(value_name = "MAIN.PLC", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// Control model that the program is translated for.

@@ -3,9 +3,10 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use bahn_host::PlcSource;
-use bahn_parameters::ParameterList;
+use bahn_host::{Machine900, PlcSource};
+use bahn_parameters::{ControlModel, ParameterList};
 use bahn_plc::{Options, PlcProgram, ProgramMemory};
+use bahn_text::Diagnostic;
 
 use super::options::ProgramOptions;
 use crate::diagnostics::{self, PRINTED_MAX};
@@ -14,6 +15,8 @@ use crate::{UsageError, files, settings};
 /// A compiled program with its machine parameters.
 pub(super) struct Source {
     source: PlcSource,
+    /// What of a machine with a System 900 does not go together with it: its window, what is of a TNC.
+    pub of_machine: Vec<Diagnostic>,
     /// The machine parameters of the model or of the user's list.
     pub parameters: ParameterList,
 }
@@ -21,6 +24,9 @@ pub(super) struct Source {
 impl Source {
     /// Compiles the main file and what it links.
     pub fn compile(options: &ProgramOptions) -> Result<Source, UsageError> {
+        if options.file.is_dir() {
+            return Source::of_machine(options);
+        }
         // An unreadable main file is wrong use; a linked one is an error of the program.
         let bytes = files::read_table(&options.file)?;
         let parameters = settings::parameter_list(options.model, options.parameters.as_deref())?;
@@ -33,13 +39,45 @@ impl Source {
         compile_options.strict = options.strict;
         Ok(Source {
             source: PlcSource::compile(&options.file, Some(bytes), compile_options),
+            of_machine: Vec::new(),
             parameters,
+        })
+    }
+
+    /// The program of the folder of a machine with a System 900.
+    fn of_machine(options: &ProgramOptions) -> Result<Source, UsageError> {
+        let folder = &options.file;
+        let wrong = |what: &str| UsageError::new(format!("{}: {what}", folder.display()));
+        if !Machine900::is_meant(folder) {
+            return Err(wrong(
+                "this command takes the main file of a PLC program, or the folder of a machine with a System 900",
+            ));
+        }
+        if options.parameters.is_some() || options.model != ControlModel::default() {
+            return Err(wrong(
+                "--parameters and --model are for a TNC, and this machine has a System 900",
+            ));
+        }
+        let main = Machine900::plc_file(folder)?
+            .ok_or_else(|| wrong("`plc` in machine.toml names no PLC program"))?;
+        let bytes = files::read_table(&main)?;
+        let mut compile_options = Options::default();
+        compile_options.strict = options.strict;
+        let source = PlcSource::compile(&main, Some(bytes), compile_options);
+        let of_machine = match source.compilation.program.is_some() {
+            true => Machine900::load(folder)?.err().unwrap_or_default(),
+            false => Vec::new(),
+        };
+        Ok(Source {
+            source,
+            of_machine,
+            parameters: settings::parameter_list(options.model, None)?,
         })
     }
 
     /// Prints errors and warnings as rustc does.
     pub fn print_faults(&self) {
-        let faults = self.source.faults();
+        let faults = [self.source.faults(), self.of_machine.clone()].concat();
         let shown = faults.iter().take(PRINTED_MAX);
         shown.for_each(diagnostics::print_fault);
         let rest = faults.len().saturating_sub(PRINTED_MAX);

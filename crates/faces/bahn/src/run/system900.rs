@@ -37,8 +37,8 @@ pub(super) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     let inputs = machine.inputs();
     let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
     files::keep_inputs(&inputs, &options.written())?;
-    let plant = machine.plant();
     let power_on = power_on(options, &machine)?;
+    let plant = machine.plant(&power_on.memory);
     let script = match load_script(options, &power_on.memory, &plant)? {
         Ok(script) => script,
         Err(faults) => return refused(&faults),

@@ -47,6 +47,7 @@ mod scope;
 mod scripts;
 mod shelf;
 mod system900_machine;
+mod system900_portal;
 mod system900_run;
 mod tables;
 mod technology;

@@ -17,7 +17,7 @@ fn the_portal_is_fine() {
     );
     assert_eq!(
         report[0]["programs"].as_array().map(Vec::len),
-        Some(2),
+        Some(6),
         "{report}"
     );
 }
@@ -102,7 +102,7 @@ fn a_wrong_plant_is_a_fault_of_the_folder() {
     let described = folder.read("portal/machine.toml");
     folder.write(
         "portal/machine.toml",
-        format!("{described}plant = \"plant.toml\"\nanswers = [\"enable\", \"luck\"]\n"),
+        format!("{described}answers = [\"enable\", \"luck\"]\n"),
     );
     folder.write("portal/plant.toml", "[axis.X]\nspeed = 1\n");
     let run = folder.bahn("machine check portal");

@@ -1,4 +1,5 @@
-//! Programs on a machine with a System 900: both channels of the portal, scripts, recordings, what survives power-off.
+//! Programs on a machine with a System 900: both channels of the portal, scripts, recordings, what survives power-off; on the ideal
+//! machine, where the times are those of the path alone.
 
 use serde_json::{Value, json};
 
@@ -19,7 +20,7 @@ fn with_script(folder: &Folder, script: &str, more: &str) -> (i32, Value, String
 /// four quarters, a whole turn.
 #[test]
 fn both_heads_run_their_programs() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let run = folder.bahn("run --machine portal --fresh --read P8685,2:P8685,P12151,P12157 --format json");
     assert_eq!(run.code(), 0, "{}", run.err());
     let report = run.json();
@@ -67,7 +68,7 @@ fn both_heads_run_their_programs() {
 /// A file runs in channel 1 alone; its path is drawn.
 #[test]
 fn a_named_program_runs_alone() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let run = folder.bahn("run P2000.900 --machine portal --fresh --path p.csv --format json");
     // Channel 1 has no tool 11.
     assert_eq!(run.code(), 1, "{}", run.out());
@@ -81,7 +82,7 @@ fn a_named_program_runs_alone() {
 /// A drive that gives nothing any more leaves its axis behind: M2001 of logical axis 3 breaks the program off.
 #[test]
 fn a_dead_drive_is_a_lag_error() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let (code, report, errors) = with_script(&folder, "start+3: fault drive 1 dead\n", "");
     assert_eq!(code, 1, "{report}");
     let said = &report["messages"][0];
@@ -101,7 +102,7 @@ fn a_dead_drive_is_a_lag_error() {
 /// STOP of one channel stops the network, q904; START goes on.
 #[test]
 fn stop_in_the_network() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let script = "start+2: P8682=1\n+1: expect P8685=1, 2:P8685=1\n+0: P8682=2, 2:P8682=2\n+1: expect P8685=2, 2:P8685=2\n";
     let (code, report, errors) = with_script(&folder, script, "");
     assert_eq!(
@@ -117,7 +118,7 @@ fn stop_in_the_network() {
 /// The script is the PLC and the operator: without a start nothing runs.
 #[test]
 fn without_an_operator_the_script_does_all() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let script = "0.5: P8683=2\n+0.5: P8682=2\n+0.5: expect P8685=2, 2:P8685=0\n+0.1: P8705=1\n+0.2: expect P8685=0\n+0: end\n";
     let (code, report, errors) = with_script(&folder, script, "--operator absent");
     // What was expected came, but the program did not come to its end.
@@ -133,7 +134,7 @@ fn without_an_operator_the_script_does_all() {
 /// A program that is not there is no program that has run.
 #[test]
 fn a_missing_program_is_said() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     std::fs::remove_file(folder.path("portal/programs/P2000.900")).unwrap();
     let run = folder.bahn("run --machine portal --fresh");
     assert_eq!(run.code(), 1, "{}", run.out());
@@ -152,7 +153,7 @@ fn a_missing_program_is_said() {
 /// goes well until it is called.
 #[test]
 fn an_emergency_program_is_called() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let script = "start+3: plc 2:P8710=1\n";
     let (code, report, errors) = with_script(&folder, script, "--read 2:P8900,2:P12151");
     assert_eq!((code, &report["messages"]), (0, &json!([])), "{errors}");
@@ -172,7 +173,7 @@ fn an_emergency_program_is_called() {
 /// holes are drilled, 14 mm each.
 #[test]
 fn a_named_program_begins_at_its_beginning() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let feed_mm = |more: &str| {
         let run = folder.bahn(&format!("run P1000.900 --machine portal --format json {more}"));
         assert_eq!(run.code(), 0, "{more}: {}", run.err());
@@ -186,7 +187,7 @@ fn a_named_program_begins_at_its_beginning() {
 /// A row for every 100 ms, not rounded; the heading has name and unit.
 #[test]
 fn parameters_are_recorded() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let run = folder.bahn(
         "run P1000.900 --machine portal --fresh --record r.csv --signals P12151,P8685,q2150 --every 100 --format json",
     );
@@ -203,7 +204,7 @@ fn parameters_are_recorded() {
 /// All parameters survive power-off; --fresh begins with the data file.
 #[test]
 fn parameters_survive_power_off() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     folder.write("set.txt", "0.1: P510=2.5\n0.2: end\n");
     let run = folder.bahn("run --machine portal --script set.txt --operator absent --format json");
     assert_eq!(run.json()["reads"], json!({}));
@@ -301,7 +302,7 @@ fn the_flash_keeps_parameters_and_programs() {
 /// A log repeats the run: the same report.
 #[test]
 fn a_log_repeats_the_run() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let first = folder
         .bahn("run P1000.900 --machine portal --fresh --log run.log --format json")
         .json();
@@ -315,7 +316,7 @@ fn a_log_repeats_the_run() {
 /// What means something to a TNC alone is refused; so is what a script does not know.
 #[test]
 fn wrong_use_is_refused() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     for option in ["--mp 7310=0", "--image p.png", "--override 50", "--strict"] {
         let run = folder.bahn(&format!("run --machine portal --fresh {option}"));
         assert_eq!(run.code(), 2, "{option}");

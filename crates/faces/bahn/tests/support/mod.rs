@@ -101,6 +101,16 @@ impl Folder {
         folder
     }
 
+    /// The same on an ideal machine, with the standard answers in the place of its PLC and without the cycle of its tool change.
+    pub fn with_ideal_portal() -> Folder {
+        let folder = Folder::with_portal();
+        let described = folder.read("portal/machine.toml");
+        let (ideal, _) = described.split_once("plant = ").unwrap();
+        folder.write("portal/machine.toml", format!("{ideal}plant = \"ideal\"\n"));
+        std::fs::remove_file(folder.path("portal/programs/Z6.900")).unwrap();
+        folder
+    }
+
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }

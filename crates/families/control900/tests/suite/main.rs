@@ -14,4 +14,5 @@ mod monitors;
 mod parameters_of_axes;
 mod parameters_of_channels;
 mod parameters_of_devices;
+mod plc_program;
 mod programs;

@@ -70,10 +70,17 @@ impl Rig {
             "{:?}",
             file.faults().iter().map(ToString::to_string).collect::<Vec<_>>()
         );
-        let setup = Setup {
-            answers,
-            ..Setup::default()
-        };
+        Rig::with(
+            &file,
+            Setup {
+                answers,
+                ..Setup::default()
+            },
+        )
+    }
+
+    /// Switched on with parameters, and a PLC or answers.
+    pub fn with(file: &DataFile, setup: Setup) -> Rig {
         let plant = Machine {
             ideal: ideal_machine(file.memory()),
             pressed: false,

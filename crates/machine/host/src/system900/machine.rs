@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use bahn_control900::StandardAnswers;
+use bahn_control900::{Plc900, StandardAnswers};
 use bahn_machine::{Answer900, Folder900, Machine, Plant900};
-use bahn_system900::{Checked, DataFile, check};
+use bahn_system900::{AxisBlock, AxisParameter, Checked, Connection, DataFile, LOGICAL_AXES, Memory, check};
 use bahn_text::{Diagnostic, Severity, Span, decode};
 
 use super::ideal::IdealMachine;
+use super::plc;
 use crate::any_plant::AnyPlant;
 use crate::{HostError, files};
 
@@ -23,6 +24,10 @@ pub struct Machine900 {
     pub checked: Checked,
     /// The plant, where a file describes it.
     described: Option<Machine>,
+    /// The PLC program with its window; `None` without one.
+    pub plc: Option<Plc900>,
+    /// What is accepted of the PLC program, but looks wrong.
+    plc_warnings: Vec<Diagnostic>,
 }
 
 impl Machine900 {
@@ -65,6 +70,7 @@ impl Machine900 {
                 None
             }
         };
+        let plc::Found { plc, warnings } = plc::load(root, &folder, parameters.memory(), &text, &mut faults);
         match faults.is_empty() {
             true => Ok(Ok(Machine900 {
                 root: root.to_owned(),
@@ -72,9 +78,21 @@ impl Machine900 {
                 parameters,
                 checked,
                 described,
+                plc,
+                plc_warnings: warnings,
             })),
             false => Ok(Err(faults)),
         }
+    }
+
+    /// The main file of the PLC program of a folder, whatever else is wrong there; `None` without one.
+    ///
+    /// # Errors
+    /// When there is no `machine.toml`.
+    pub fn plc_file(root: &Path) -> Result<Option<PathBuf>, HostError> {
+        let text = decode(&files::read_description(&root.join(Folder900::FILE))?);
+        let (folder, _) = Folder900::read(&text);
+        Ok(folder.plc.map(|plc| root.join(plc.text)))
     }
 
     /// The folder of its part programs and cycles.
@@ -89,7 +107,8 @@ impl Machine900 {
             Plant900::Ideal => None,
         };
         let own = [Folder900::FILE, &self.folder.parameters].map(|file| self.root.join(file));
-        own.into_iter().chain(plant).collect()
+        let plc = self.folder.plc.iter().map(|plc| self.root.join(&plc.text));
+        own.into_iter().chain(plant).chain(plc).collect()
     }
 
     /// What answers in the place of a PLC.
@@ -105,9 +124,23 @@ impl Machine900 {
     }
 
     /// The plant as its file describes it, or an ideal one.
-    pub fn plant(&self) -> AnyPlant {
+    ///
+    /// Decision: The axes of a plant whose encoders know their position at power-on, P12015, stand where P12152 says: nobody has moved
+    /// them since
+    pub fn plant(&self, memory: &Memory) -> AnyPlant {
         match &self.described {
-            Some(described) => AnyPlant::new(described.clone()),
+            Some(described) => {
+                let mut plant = described.clone();
+                let mut mechanics = plant.mechanics();
+                for (axis, place) in described.axes().zip(&mut mechanics.axis) {
+                    if let Some(position) = position_at_start(memory, axis.output) {
+                        (place.table, place.motor) = (position, position);
+                    }
+                }
+                // Beyond its travel an axis stays where its file has it.
+                let _ = plant.stand_at(&mechanics);
+                AnyPlant::new(plant)
+            }
             None => AnyPlant::new(IdealMachine::of(self.parameters.memory())),
         }
     }
@@ -118,8 +151,19 @@ impl Machine900 {
         let all = self.checked.faults.iter();
         let warnings = all.filter(|fault| fault.severity != Severity::Error).cloned();
         let text = self.parameters.text();
-        warnings.map(|fault| fault.in_text(&data, text)).collect()
+        let own = warnings.map(|fault| fault.in_text(&data, text));
+        own.chain(self.plc_warnings.iter().cloned()).collect()
     }
+}
+
+/// Where the axis at an output, from 0, was at power-off, as far as it knows that.
+fn position_at_start(memory: &Memory, output: usize) -> Option<f64> {
+    let is_there = |physical: &u8| {
+        let block = AxisBlock::of(memory, *physical);
+        block.connection != Connection::None && block.is_absolute && usize::from(block.output) == output + 1
+    };
+    let physical = (1..=LOGICAL_AXES as u8).find(is_there)?;
+    memory.of_axis(physical, AxisParameter::ActualPosition).number()
 }
 
 /// The plant of a file; `None` for an ideal one.
@@ -131,7 +175,7 @@ fn described(root: &Path, folder: &Folder900) -> Result<Option<Machine>, Vec<Dia
     let bytes = files::read_description(&path)
         .map_err(|error| vec![Diagnostic::error(Span::default(), error.to_string()).at(&path, "")])?;
     let text = decode(&bytes);
-    Machine::from_toml(&text).map(Some).map_err(|faults| {
+    Machine::with_numbered_axes(&text).map(Some).map_err(|faults| {
         let faults = faults.into_iter();
         faults.map(|fault| fault.in_text(&path, &text)).collect()
     })

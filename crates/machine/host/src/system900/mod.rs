@@ -1,6 +1,6 @@
 //! A machine with a System 900: its folder, what it begins with, and what a cycle of it is beside what every host does.
 //!
-//! - `machine` loads the folder, `programs` reads part programs by their numbers, `ideal` is the machine of which nothing is
+//! - `machine` loads the folder, `plc` its PLC program with the `window`, `programs` reads part programs by their numbers, `ideal` is the machine of which nothing is
 //!   known but its parameters;
 //! - `command` is what is done, `notice` what happens, `operator` who stands by, `stage` what scripts say;
 //! - `state` is what survives power-off, `flash` what is kept without battery.
@@ -11,9 +11,11 @@ mod ideal;
 mod machine;
 mod notice;
 mod operator;
+mod plc;
 mod programs;
 mod stage;
 mod state;
+mod window;
 
 pub use command::{By, Command900};
 pub use ideal::IdealMachine;
@@ -74,6 +76,7 @@ impl PowerOn900 {
             memory: machine.parameters.memory().clone(),
             setup: Setup {
                 answers: machine.answers(),
+                plc: machine.plc.clone(),
                 ..Setup::default()
             },
             programs: Programs900::of_folder(&machine.programs()),

@@ -24,5 +24,7 @@ mod replay;
 mod rules_of_a_run;
 mod scripts;
 mod standard_plc;
+mod system900_plc;
+mod system900_portal;
 mod tnc355;
 mod twin;

@@ -16,6 +16,7 @@ mod interlock;
 mod laws;
 mod magazine;
 mod mill;
+mod numbered_axes;
 mod spindle;
 mod terminals;
 mod things;

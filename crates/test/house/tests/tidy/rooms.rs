@@ -31,6 +31,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         "technology",
         &["text", "path", "motion", "din", "kernel", "script"],
     ),
+    ("workpiece", &["path", "picture"]),
+    ("viewer", &["path", "workpiece"]),
+    ("exchange", &[]),
+    ("plc", &["text", "path", "exchange", "parameters"]),
     (
         "control900",
         &[
@@ -40,15 +44,13 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "system900",
             "reader",
             "interpreter900",
+            "exchange",
+            "plc",
             "motion",
             "servo",
             "kernel",
         ],
     ),
-    ("workpiece", &["path", "picture"]),
-    ("viewer", &["path", "workpiece"]),
-    ("exchange", &[]),
-    ("plc", &["text", "path", "exchange", "parameters"]),
     ("convert", &["path", "parameters", "program", "interpreter"]),
     (
         "lsp",
