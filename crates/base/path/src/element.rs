@@ -329,6 +329,8 @@ pub enum Function {
         /// The block to jump to, of the program that it stands in, as [`BlockRef::block`] counts.
         target: u32,
     },
+    /// M26 of a System 900: a signal ends the movement of its block, and the program goes on after it [002:3717-3727].
+    Residual,
 }
 
 /// What output S gives for a laser or a water jet until the next one, 0 to 9.999 V [000:9841-9909].

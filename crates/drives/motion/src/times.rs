@@ -123,7 +123,8 @@ impl Stopwatch {
             | Function::Plc(_)
             | Function::Blank(_)
             | Function::Write { .. }
-            | Function::Shift { .. } => 0.0,
+            | Function::Shift { .. }
+            | Function::Residual => 0.0,
         }
     }
 

@@ -1,8 +1,9 @@
 //! M functions with branch: what is left of the way is given up when the PLC confirms, and the program goes on elsewhere
 //! [002:5484-5491].
 
-use bahn_system900::{AxisParameter, Memory};
+use bahn_system900::{AxisParameter, ChannelParameter, Memory};
 
+use crate::channel::Branch;
 use crate::machine::Machine;
 
 /// A branch that was not confirmed is over with its block.
@@ -11,10 +12,39 @@ pub(crate) fn follow_branches(machine: &mut Machine) {
         let executed = channel.run.element().map(|element| element.sequence);
         let is_over = |sequence: u64| executed.is_none_or(|executed| executed > sequence);
         channel.branch = channel.branch.filter(|branch| !is_over(branch.sequence));
+        channel.residual = channel.residual.filter(|sequence| !is_over(*sequence));
     }
 }
 
-/// A confirmed branch whose axes stand: the program goes on at its target, outside the cycle.
+/// A block with M26 has come to its end before its way was given up.
+pub(crate) fn come_to_its_end(machine: &mut Machine, k: usize) {
+    if let Some(channel) = machine.channels.get_mut(k) {
+        channel.residual = None;
+        channel.jump = channel.jump.filter(|jump| jump.target.is_some());
+    }
+}
+
+/// P8715: the way of a block with M26 is given up where the path can stop; P8695 gets its number [002:3717-3722].
+pub(crate) fn end_the_way(machine: &mut Machine, number: u8) {
+    let k = usize::from(number) - 1;
+    let Some(channel) = machine.channels.get_mut(k) else {
+        return;
+    };
+    let Some(sequence) = channel.residual.take() else {
+        return;
+    };
+    channel.jump = Some(Branch {
+        sequence,
+        target: None,
+    });
+    let block = channel.block();
+    let block = i64::from(machine.block_number(k, block));
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::ResidualBlock, block);
+}
+
+/// A confirmed branch whose axes stand: the program goes on at its target, or after its block, outside the cycle.
 pub(crate) fn jump(machine: &mut Machine, k: usize) {
     let Some(channel) = machine.channels.get_mut(k) else {
         return;
@@ -33,14 +63,21 @@ pub(crate) fn jump(machine: &mut Machine, k: usize) {
     channel.run.track.forget_position();
     machine.give_memory(k);
     if let Some((_, Some(feeder), _)) = machine.parts(k) {
-        feeder.return_to(branch.sequence, &here, &chain, limits);
-        match language {
-            Some(language) => (language.branch)(feeder.reader_mut(), branch.sequence, branch.target, &path),
-            None => feeder.reader_mut().goto(branch.target),
+        match (branch.target, language) {
+            (None, _) => feeder.cut(&here, &chain, limits),
+            (Some(target), language) => {
+                feeder.return_to(branch.sequence, &here, &chain, limits);
+                match language {
+                    Some(language) => (language.branch)(feeder.reader_mut(), branch.sequence, target, &path),
+                    None => feeder.reader_mut().goto(target),
+                }
+            }
         }
     }
     machine.take_memory(k);
-    store_measured(machine, k);
+    if branch.target.is_some() {
+        store_measured(machine, k);
+    }
 }
 
 /// P12153: where the axes were when the way was given up, as they are displayed.

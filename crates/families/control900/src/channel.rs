@@ -6,7 +6,7 @@ use bahn_kernel::{
     Acting, Chain, Demands, Feeder, Now, Offsets, Outputs, OwnAxes, Run, RunFamily, SpindleLoop, Track,
 };
 use bahn_motion::{FunctionOutput, Limits, Place};
-use bahn_path::{Axis, BlockRef, Function, LiveData, Position, Voltage};
+use bahn_path::{Axis, BlockRef, FeedRate, Function, LiveData, Position, Voltage};
 use bahn_reader::Reader;
 use bahn_servo::Timing;
 use bahn_system900::{Acts, AxisParameter, ChannelParameter, MTable, Memory};
@@ -116,7 +116,9 @@ pub(crate) struct Channel {
     pub changes_tool: bool,
     /// A branch that waits for its confirmation, until its block is over: the target.
     pub branch: Option<Branch>,
-    /// The branch was confirmed: the path stops, and goes on there.
+    /// The block with M26 that is executed, whose way may be ended, by its place in the order of execution.
+    pub residual: Option<u64>,
+    /// The branch was confirmed, or the way is to end: the path stops, and goes on there.
     pub jump: Option<Branch>,
     /// The axes may move: P8701, P8702.
     pub axes_enabled: bool,
@@ -128,6 +130,8 @@ pub(crate) struct Channel {
     pub shown: Option<(BlockRef, u32)>,
     /// Override of the path, %.
     pub override_percent: f64,
+    /// P8817: the feed of the block of this place in the order of execution, mm/min.
+    pub block_feed: Option<(u64, f64)>,
     /// The block whose fault has broken the program off.
     pub faulty: Option<BlockRef>,
 }
@@ -137,8 +141,8 @@ pub(crate) struct Channel {
 pub(crate) struct Branch {
     /// The block in which it stands, by its place in the order of execution.
     pub sequence: u64,
-    /// Where the program goes on.
-    pub target: u32,
+    /// The block where the program goes on; `None` is the one after it.
+    pub target: Option<u32>,
 }
 
 impl Channel {
@@ -164,6 +168,7 @@ impl Channel {
             waits_for_m: false,
             changes_tool: false,
             branch: None,
+            residual: None,
             jump: None,
             axes_enabled: false,
             safety_stop: false,
@@ -171,6 +176,7 @@ impl Channel {
             slope_mm_min: f64::INFINITY,
             shown: None,
             override_percent: 100.0,
+            block_feed: None,
             faulty: None,
         }
     }
@@ -183,6 +189,23 @@ impl Channel {
             stop_before,
             ..Demands::default()
         }
+    }
+
+    /// The override of the path, %, with what P8817 makes of the feed of the block that is executed.
+    ///
+    /// Decision: P8817 of a System 900 counts when it is written, for the block that is executed then, where that has a
+    /// programmed feed; the override acts on it
+    pub fn feed_percent(&self) -> f64 {
+        let of_block =
+            self.block_feed
+                .zip(self.run.element())
+                .map(|((sequence, feed), element)| match element.feed {
+                    FeedRate::Programmed(programmed) if element.sequence == sequence && programmed > 0.0 => {
+                        feed / programmed
+                    }
+                    _ => 1.0,
+                });
+        self.override_percent * of_block.unwrap_or(1.0)
     }
 
     /// What a start runs.
@@ -212,6 +235,7 @@ pub(crate) struct Site<'a> {
     pub waits_for_m: &'a mut bool,
     pub changes_tool: &'a mut bool,
     pub branch: &'a mut Option<Branch>,
+    pub residual: &'a mut Option<u64>,
     pub transfers: &'a mut Transfers,
     pub memory: &'a mut Memory,
     pub written: &'a mut Written,
@@ -254,7 +278,10 @@ impl Site<'_> {
         match (branch, target) {
             (true, Some(target)) => {
                 let sequence = self.at.map_or(0, |at| at.sequence);
-                *self.branch = Some(Branch { sequence, target });
+                *self.branch = Some(Branch {
+                    sequence,
+                    target: Some(target),
+                });
             }
             (true, None) => {}
             _ if stop => {
@@ -276,6 +303,7 @@ impl Outputs for Site<'_> {
         match function {
             Function::M(m) => self.transfer(*m, None),
             Function::Branch { m, target } => self.transfer(*m, Some(*target)),
+            Function::Residual => *self.residual = self.at.map(|at| at.sequence),
             Function::Write { q, value } => {
                 self.memory.store_exact(bahn_system900::Place::Q(*q), *value);
                 self.written.push(*q);

@@ -15,7 +15,7 @@ use crate::answers::bit;
 use crate::channel::{Channel, Mode};
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{hand, monitor, positions};
+use crate::{branch, hand, monitor, positions};
 
 /// Values of P8682 [002:3613-3619].
 const KEY_STOP: i64 = 1;
@@ -67,6 +67,8 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
             })
         }
         ChannelParameter::BlockRelease if is_set => release(machine, number),
+        ChannelParameter::BlockFeed => take_block_feed(machine, number),
+        ChannelParameter::EndWay if value == Some(1) => branch::end_the_way(machine, number),
         ChannelParameter::Acknowledge => acknowledge(machine, number),
         ChannelParameter::SystemMessage
         | ChannelParameter::HighMessage
@@ -220,13 +222,29 @@ fn call(machine: &mut Machine, number: u8, which: usize) {
     }
 }
 
-/// P8690: an M function by hand goes to the PLC [002:3714-3715].
+/// P8817: the feed of the block that is executed, until its end [002:4294-4296].
+fn take_block_feed(machine: &mut Machine, number: u8) {
+    let feed = machine
+        .memory
+        .of_channel(number, ChannelParameter::BlockFeed)
+        .number();
+    if let Some(channel) = machine.channels.get_mut(usize::from(number) - 1) {
+        let executed = channel.run.element().map(|element| element.sequence);
+        channel.block_feed = executed.zip(feed.filter(|feed| *feed > 0.0));
+    }
+}
+
+/// P8690: an M function goes to the PLC in HAND [002:3714-3715].
 fn manual_m(machine: &mut Machine, number: u8) {
     let m = machine
         .memory
         .of_channel(number, ChannelParameter::ManualM)
         .whole();
-    let m = m.and_then(|m| u16::try_from(m).ok());
+    let in_hand = machine
+        .channels
+        .get(usize::from(number) - 1)
+        .is_some_and(|channel| channel.mode == Mode::Hand);
+    let m = m.and_then(|m| u16::try_from(m).ok()).filter(|_| in_hand);
     let Some((_, _, mut site)) = machine.parts(usize::from(number) - 1) else {
         return;
     };

@@ -100,6 +100,7 @@ impl Family for Machine {
 fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
     match stop {
         Stop::Barrier(_) => {
+            branch::come_to_its_end(machine, k);
             let Some((run, _, mut site)) = machine.parts(k) else {
                 return;
             };

@@ -256,7 +256,7 @@ fn turn_spindles(machine: &mut Machine) {
         for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == spindle.axis) {
             let state = turn(&spindle, hand, unit, time_s);
             let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
-            machine.memory.show_spindle(number, rpm, state);
+            machine.memory.show_spindle(number, rpm / spindle.unit_rpm, state);
         }
     }
 }
@@ -269,7 +269,8 @@ fn turn(spindle: &SpindleBlock, hand: &mut Hand, unit: &mut AxisUnit, time_s: f6
     }
     hand.turns = true;
     unit.mover = Mover::Rotation;
-    let rpm = spindle.rpm.min(spindle.max_rpm);
+    let greatest = unit.parameters.motion.rapid_mm_min / DEG_MIN_PER_RPM;
+    let rpm = spindle.rpm.min(spindle.max_rpm).min(greatest);
     match spindle.order {
         0 => {
             unit.come_to_rest(time_s);

@@ -110,7 +110,7 @@ impl Machine {
             ready: self.core.emergency.circuit() == Circuit::Ready,
             loops_closed: self.core.loops_closed,
             feed_percent: 100.0,
-            program_percent: channel.override_percent,
+            program_percent: channel.feed_percent(),
             program_rapid: false,
             axis_keys: PerPlcAxis::splat(None),
             wheel_mm: PerPlcAxis::splat(0.0),
@@ -131,6 +131,7 @@ impl Machine {
             waits_for_m: &mut channel.waits_for_m,
             changes_tool: &mut channel.changes_tool,
             branch: &mut channel.branch,
+            residual: &mut channel.residual,
             transfers: &mut self.transfers,
             memory: &mut self.memory,
             written: &mut self.written,
@@ -256,7 +257,8 @@ impl Machine {
         let Some(channel) = self.channels.get_mut(k) else {
             return;
         };
-        (channel.branch, channel.jump, channel.waits_for_m) = (None, None, false);
+        (channel.branch, channel.residual, channel.jump) = (None, None, None);
+        channel.waits_for_m = false;
         channel.faulty = None;
         let Some(program) = channel.starting() else {
             return;
@@ -350,7 +352,7 @@ impl Machine {
         run.break_off(&mut site.acting());
         run.track.path.clear();
         *site.waits_for_m = false;
-        *site.branch = None;
+        (*site.branch, *site.residual) = (None, None);
         let number = site.number;
         site.memory.set_channel(number, ChannelParameter::WaitsForM, 0);
         if let Some(channel) = self.channels.get_mut(k) {

@@ -90,7 +90,8 @@ impl<'a> Site<'a> {
             | Function::Blank(_)
             | Function::Write { .. }
             | Function::Shift { .. }
-            | Function::Branch { .. } => {}
+            | Function::Branch { .. }
+            | Function::Residual => {}
         }
         true
     }

@@ -273,6 +273,11 @@ impl Feeder {
         self.begin_again(machine, chain, limits);
     }
 
+    /// The movement that is executed ends where the axes stand; nothing after it was read, and the program goes on there.
+    pub fn cut(&mut self, machine: &Position, chain: &Chain, limits: Box2) {
+        self.begin_again(machine, chain, limits);
+    }
+
     /// The block to which [`Feeder::return_to`] goes back.
     pub fn block_at(&self, sequence: u64) -> BlockRef {
         match sequence <= self.reader.blocks_executed() {

@@ -93,6 +93,8 @@ ChannelParameter {
     Emergency3 = 8712,
     /// P8713: calls emergency program 4.
     Emergency4 = 8713,
+    /// P8715: the way of a block with M26 ends [002:3889-3890].
+    EndWay = 8715,
     /// P8750: how axes are moved by hand [002:3983-3993].
     ManualMode = 8750,
     /// P8751: the logical axis that is moved by hand.
@@ -127,6 +129,8 @@ ChannelParameter {
     TestFeed = 8815,
     /// P8816: rapid traverse.
     RapidFeed = 8816,
+    /// P8817: feed of the block that is executed.
+    BlockFeed = 8817,
     /// P8818: programmed feeds, %.
     FeedPercent = 8818,
     /// P8820: emergency program 1 and its block; those of the others follow [002:4303-4314].

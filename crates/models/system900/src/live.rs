@@ -110,6 +110,7 @@ impl Memory {
                     | ChannelParameter::TakeTool
                     | ChannelParameter::OffsetCommand
                     | ChannelParameter::StoreTool
+                    | ChannelParameter::BlockFeed
             ),
             Meaning::Override(_) | Meaning::Locks => true,
             Meaning::Nothing => false,

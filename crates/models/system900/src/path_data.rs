@@ -194,6 +194,18 @@ impl PathData<'_> {
         self.positive(AXIS.0 + axis + 20).unwrap_or(16.0)
     }
 
+    /// How a logical axis turns: the degrees after which it is where it was, and whether G5 to G7 say which way it goes, P12001
+    /// and P12041; `None` for an axis that goes the way that is programmed.
+    pub fn turn(&self, logical: u8) -> Option<(f64, bool)> {
+        let axis = AXIS.0 + AXIS_BLOCK * u32::from(logical.saturating_sub(1));
+        let by_word = match self.bits(axis + 1) {
+            2 => false,
+            3 => true,
+            _ => return None,
+        };
+        Some((self.positive(axis + 41).unwrap_or(360.0), by_word))
+    }
+
     /// The zero point that AUTO begins with, P8830; 53 where it says none.
     pub fn first_zero_point(&self) -> u16 {
         let said = self.positive(8830).unwrap_or(53.0);
@@ -325,6 +337,11 @@ impl PathData<'_> {
     /// Where the programmed speed of a spindle word is shown when it is executed, P8925 to P8932.
     pub fn speed(&self, word: u8) -> Name {
         Name::P(self.channel, 8924 + u32::from(word))
+    }
+
+    /// How speeds are meant when it is executed, P8981: 96 or 97.
+    pub fn speed_kind(&self) -> Name {
+        Name::P(self.channel, 8981)
     }
 
     /// P30 to P39 of the drilling functions.

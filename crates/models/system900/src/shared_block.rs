@@ -1,6 +1,10 @@
 //! Parameters that all channels share, and those of the system by which a control runs [002:6147-6627] [002:1272-1350].
+//!
+//! Decision: With G96 a spindle of a System 900 turns P11648 / (pi * d); d is P11642, or twice P12151 of the axis P11641. P11644
+//! limits the cutting speed, P12004 of the spindle the speed in rpm; P11649 shows what turns in the unit of P11648
 
 use crate::array::Cell;
+use crate::axis_block::AxisParameter;
 use crate::memory::{Memory, Place};
 use crate::numbered::parameters;
 use crate::numbers::{COUPLING_BLOCK, COUPLINGS_MAX, SHARED, SPINDLE_WORDS};
@@ -40,6 +44,12 @@ const PRESET: [f64; 27] = [
 const RAW_MAX: f64 = 255.0;
 /// Ratio, and what couples or is coupled, in the block of a coupling.
 const HANDWHEEL_BLOCK: u32 = 10;
+/// P11647: a cutting speed is programmed.
+const CUTTING: f64 = 96.0;
+/// P11643: it counts in m/min.
+const METRES: f64 = 1000.0;
+/// P11646 = 1: degrees.
+const TURN_DEG: f64 = 360.0;
 /// Handwheels [002:6297-6360].
 const HANDWHEELS: u32 = 8;
 
@@ -84,10 +94,12 @@ pub struct SpindleBlock {
     pub number: u8,
     /// The physical axis that turns.
     pub axis: u8,
-    /// Speed of G97 at most, rpm.
+    /// Its speed at most, rpm: P11645, with G96 that of the cutting speed P11644.
     pub max_rpm: f64,
     /// The programmed speed, rpm.
     pub rpm: f64,
+    /// What one unit of the programmed speed is, rpm; infinite with G96 in the middle of the reference.
+    pub unit_rpm: f64,
     /// What is ordered: off 0, positive 1, negative -1, to its position ±2.
     pub order: i64,
     /// Where it is positioned, degrees.
@@ -245,11 +257,28 @@ impl Memory {
         let number = number.min(COUPLINGS_MAX as u8);
         let at = u32::from(number.checked_sub(1)?) * COUPLING_BLOCK;
         let of = |offset: u32| self.shared_number(SharedParameter::Spindle, at + offset);
+        let limit = |offset: u32| Some(of(offset)).filter(|limit| *limit > 0.0);
+        let (unit_rpm, max_rpm) = if of(7) == CUTTING {
+            let round = std::f64::consts::PI * self.cutting_diameter(at);
+            let factor = if of(3) == METRES { METRES } else { 1.0 };
+            (factor / round, limit(4).map(|speed| speed / round))
+        } else if of(6) == 1.0 {
+            (1.0 / TURN_DEG, limit(5))
+        } else {
+            (1.0, limit(5))
+        };
+        let programmed = of(8);
         Some(SpindleBlock {
             number,
             axis: self.shared_axis(SharedParameter::Spindle, at)?,
-            max_rpm: Some(of(5)).filter(|rpm| *rpm > 0.0).unwrap_or(f64::INFINITY),
-            rpm: of(8),
+            max_rpm: max_rpm.unwrap_or(f64::INFINITY),
+            // Nothing is nothing, also where a unit is infinite.
+            rpm: if programmed == 0.0 {
+                0.0
+            } else {
+                programmed * unit_rpm
+            },
+            unit_rpm,
             order: self
                 .shared_cell(SharedParameter::Spindle, at + 10)
                 .whole()
@@ -259,23 +288,44 @@ impl Memory {
         })
     }
 
+    /// The diameter that a cutting speed is about, mm: P11642, or twice where the axis P11641 stands.
+    fn cutting_diameter(&self, at: u32) -> f64 {
+        let of = |offset: u32| self.shared_number(SharedParameter::Spindle, at + offset);
+        let diameter = match self.shared_axis(SharedParameter::Spindle, at + 1) {
+            None => of(2),
+            Some(axis) => {
+                let stands = self.of_axis(axis, AxisParameter::NominalPosition).number();
+                2.0 * stands.unwrap_or(0.0)
+            }
+        };
+        diameter.abs()
+    }
+
     /// A programmed speed, rpm, goes to the spindle that the descriptor of the channel gives to the word S [002:858-881]; to none
     /// where it names none.
     pub fn program_speed(&mut self, channel: u8, rpm: f64) {
-        let number = self.descriptor(channel).entry(SPINDLE_WORDS).whole();
-        let number = number.and_then(|number| u32::try_from(number).ok());
-        if let Some(number) = number.filter(|number| (1..=COUPLINGS_MAX).contains(number)) {
-            let at = (number - 1) * COUPLING_BLOCK + 8;
-            let place = SharedParameter::Spindle.number() - SHARED.0 + SHARED.1 + at;
-            self.store_exact(Place::Q(place), Some(rpm));
+        if let Some([speed, _]) = self.spindle_of_word(channel, 1) {
+            self.store_exact(Place::Q(speed), Some(rpm));
         }
     }
 
-    /// Stores the speed of a spindle, rpm, and whether it is reached: no 0, yes 1, at its position 2.
-    pub fn show_spindle(&mut self, number: u8, rpm: f64, reached: u8) {
+    /// The system parameters of speed and kind of speed, P11648 and P11647, of the spindle that the descriptor of a channel
+    /// gives to a spindle word, 1 to 8 [002:858-881]; `None` where it names none.
+    pub fn spindle_of_word(&self, channel: u8, word: u8) -> Option<[u32; 2]> {
+        let entry = SPINDLE_WORDS + u32::from(word.checked_sub(1).filter(|word| *word < 8)?);
+        let number = self.descriptor(channel).entry(entry).whole()?;
+        let number = u32::try_from(number)
+            .ok()
+            .filter(|number| (1..=COUPLINGS_MAX).contains(number))?;
+        let first = SharedParameter::Spindle.number() - SHARED.0 + SHARED.1 + (number - 1) * COUPLING_BLOCK;
+        Some([first + 8, first + 7])
+    }
+
+    /// Stores the speed of a spindle, in the unit of its programmed speed, and whether it is reached: no 0, yes 1, at its position 2.
+    pub fn show_spindle(&mut self, number: u8, speed: f64, reached: u8) {
         let at = u32::from(number.saturating_sub(1)) * COUPLING_BLOCK;
         let first = SharedParameter::Spindle.number() - SHARED.0 + SHARED.1 + at;
-        self.store(Place::Q(first + 9), Some(rpm), 3);
+        self.store(Place::Q(first + 9), Some(speed), 3);
         self.store(Place::Q(first + 11), Some(reached.into()), 0);
     }
 }

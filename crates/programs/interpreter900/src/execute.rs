@@ -17,6 +17,7 @@ use crate::plain;
 use crate::reader::Reader900;
 use crate::refusal::{Refusal, wrong};
 use crate::run::Extra;
+use crate::speeds;
 use crate::words::{Words, value_of};
 use crate::writes::{self, Ordered};
 
@@ -175,7 +176,7 @@ impl Reader900 {
         if let Some(feed) = words.feed {
             self.run.modal.feed = feed;
         }
-        functions::take_speeds(&words, &mut self.run.modal, memory, channel, &mut ordered)?;
+        speeds::take(&words, once, &mut self.run.modal, memory, channel, &mut ordered)?;
         let journal = Reader900::journal(keeps, &mut self.journal);
         if functions::take_tool(&words, &self.run.modal, memory, channel, journal, &mut ordered)? {
             self.run.modal.refresh(memory, channel, &self.axes)?;
@@ -183,6 +184,9 @@ impl Reader900 {
         let then = self.take_m(&words, memory, &mut ordered)?;
         let waits = ordered.waits;
         let moved = self.movement(&words, once, ordered, memory)?;
+        if then.is_cut && (!moved || once.drills.or(self.run.modal.drilling).is_some()) {
+            return wrong("M26 stands in a block that moves, and drills nothing");
+        }
         self.drilling(once, moved, then, line, memory, waits)
     }
 

@@ -1,4 +1,4 @@
-//! M functions, speeds and tools of a block.
+//! M functions and tools of a block.
 //!
 //! Decision: An M function that no parameter defines and that the control does not know itself is refused at its block
 //!
@@ -27,10 +27,15 @@ pub(crate) struct Then {
     pub loops: Option<(u32, u32)>,
     /// A cycle is called.
     pub calls: Option<u16>,
+    /// M26: P8715 ends the movement.
+    pub is_cut: bool,
 }
 
 /// What M6 calls where it lies beside the program [002:1731-1735].
 const TOOL_CYCLE: u16 = 6;
+
+/// The way of its block may end before its end [002:3717-3727].
+const RESIDUAL: u16 = 26;
 
 /// Takes M functions. `has_tool_cycle` says whether Z6 lies beside the program, `block_of` which block has a number.
 pub(crate) fn take_m(
@@ -58,7 +63,7 @@ pub(crate) fn take_m(
                 ordered.waits = true;
             }
             24 => then.loops = target.zip(count),
-            26 => return Err(Refusal::NotYet("M26".to_owned())),
+            RESIDUAL => then.is_cut = true,
             _ => {}
         }
         if number == TOOL_CYCLE && has_tool_cycle {
@@ -101,7 +106,23 @@ pub(crate) fn take_m(
             Acts::None | Acts::Flying | Acts::Stop => out(number, &defined, ordered),
         }
     }
+    if then.is_cut {
+        cut(&then, ordered)?;
+    }
     Ok(then)
+}
+
+/// M26: the block may end early, so nothing after it is read until it is over, and nothing waits for its end.
+fn cut(then: &Then, ordered: &mut Ordered) -> Result<(), Refusal> {
+    if ordered.functions.iter().any(|function| function.at == At::End) {
+        return wrong("M26 beside an M function that goes out after the path");
+    }
+    if then.calls.is_some() || then.stops || then.ends || then.loops.is_some() || then.skips_to.is_some() {
+        return wrong("M26 beside what ends, repeats or leaves its block");
+    }
+    ordered.at_start(Function::Residual, Synchronisation::Mos);
+    ordered.waits = true;
+    Ok(())
 }
 
 fn out(number: u16, defined: &MFunction, ordered: &mut Ordered) {
@@ -116,29 +137,6 @@ fn out(number: u16, defined: &MFunction, ordered: &mut Ordered) {
         let function = TechnologyFunction::new(Function::M(number), At::End, synchronisation);
         ordered.functions.push(function);
     }
-}
-
-/// Takes the speeds: they are shown and acted on when the block is executed.
-pub(crate) fn take_speeds(
-    words: &Words,
-    modal: &mut Modal,
-    memory: &Memory,
-    channel: u8,
-    ordered: &mut Ordered,
-) -> Result<(), Refusal> {
-    for (spindle, rpm) in &words.speeds {
-        if let Some(slot) = modal.speeds.get_mut(usize::from(spindle - 1)) {
-            *slot = *rpm;
-        }
-        let name = memory.path_data(channel).speed(*spindle);
-        if memory.q(name).is_ok() {
-            ordered.write_later(memory, name, Some(*rpm))?;
-        }
-        if *spindle == 1 {
-            ordered.at_start(Function::SpindleSpeed(*rpm), Synchronisation::MvsSvs);
-        }
-    }
-    Ok(())
 }
 
 /// Takes T, with the data of the tool as 16.4 of the decisions has them: in look-ahead those for the PLC, with M6 or M16 those

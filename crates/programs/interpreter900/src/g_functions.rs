@@ -1,6 +1,6 @@
 //! G functions: what stays in force, and what a block alone has.
 //!
-//! Decision: G14, G15, G47, G97, G147 and G171 are the state in which programs begin, and are taken; what they end is
+//! Decision: G14, G15, G47, G147 and G171 are the state in which programs begin, and are taken; what they end is
 //! refused at its block until it is executed here, and so is what the manual names without a word about it
 
 use bahn_path::PerAxis;
@@ -10,6 +10,7 @@ use bahn_system900::Memory;
 use crate::axes::ChannelAxes;
 use crate::modal::{FeedKind, Modal};
 use crate::refusal::Refusal;
+use crate::turning::Way;
 use crate::words::Words;
 
 /// What G functions order of their block alone.
@@ -29,6 +30,8 @@ pub(crate) struct Once {
     pub drills: Option<u16>,
     /// G86 to G89
     pub pattern: Option<u16>,
+    /// G96, G97
+    pub speed_kind: Option<u16>,
 }
 
 /// Takes the G functions of a block.
@@ -46,6 +49,9 @@ pub(crate) fn take(
         match *number {
             motion @ 0..=3 => modal.motion = motion as u8,
             4 => once.dwells = true,
+            5 => modal.way = Way::Positive,
+            6 => modal.way = Way::Negative,
+            7 => modal.way = Way::Shortest,
             8 => once.exact_stop = Some(true),
             9 => once.exact_stop = Some(false),
             10 | 11 => (modal.is_polar, modal.polar) = (*number == 10, [0.0; 2]),
@@ -57,7 +63,11 @@ pub(crate) fn take(
                     _ => Side::Off,
                 }
             }
-            14 | 15 | 47 | 97 | 147 | 171 => {}
+            14 | 15 | 47 | 147 | 171 => {}
+            96 | 97 => {
+                modal.cuts = *number == 96;
+                once.speed_kind = Some(*number);
+            }
             17..=19 | 117..=119 => {
                 modal.plane_word = *number;
                 is_stale = true;

@@ -44,6 +44,8 @@ mod plain;
 mod reader;
 mod refusal;
 mod run;
+mod speeds;
+mod turning;
 mod words;
 mod writes;
 

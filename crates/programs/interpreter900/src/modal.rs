@@ -11,6 +11,7 @@ use crate::axes::ChannelAxes;
 use crate::contour::ContourRules;
 use crate::feeds::Feeds;
 use crate::refusal::{Refusal, wrong};
+use crate::turning::{Turning, Way};
 
 /// Kv of an axis that the channel does not have, 1/s: that of P12020 where it is cleared.
 const KV: f64 = 16.0;
@@ -52,6 +53,8 @@ pub(crate) struct Modal {
     pub feed_kind: FeedKind,
     /// Of the spindle words.
     pub speeds: [f64; 8],
+    /// G96
+    pub cuts: bool,
     /// G10
     pub is_polar: bool,
     /// The last radius and angle of G10.
@@ -73,6 +76,9 @@ pub(crate) struct Modal {
     /// Axes that turn their sense at the end, by P8892.
     pub turned_round: PerAxis<bool>,
     pub g92_is_turned: bool,
+    /// G5, G6, G7: the way of axes that turn.
+    pub way: Way,
+    pub turns: PerAxis<Option<Turning>>,
 }
 
 /// A rotation about a point.
@@ -101,6 +107,7 @@ impl Modal {
             feed: 0.0,
             feed_kind: FeedKind::PerMinute,
             speeds: [0.0; 8],
+            cuts: false,
             is_polar: false,
             polar: [0.0; 2],
             override_off: false,
@@ -113,6 +120,8 @@ impl Modal {
             logical: PerAxis::default(),
             turned_round: PerAxis::default(),
             g92_is_turned: true,
+            way: Way::Shortest,
+            turns: PerAxis::default(),
         }
     }
 
@@ -176,6 +185,7 @@ impl Modal {
             }
             self.shift[axis.slot] = shift;
             self.logical[axis.slot] = axis.logical;
+            self.turns[axis.slot] = data.turn(axis.logical).map(Turning::of);
             self.turned_round[axis.slot] = mirrored >> (axis.logical - 1).min(31) & 1 != 0;
         }
         Ok(())
@@ -247,8 +257,16 @@ impl Modal {
     /// Where an axis comes to by its word, without rotation.
     pub fn axis_end(&self, axis: Axis, value: f64, here: f64) -> f64 {
         match self.is_absolute {
-            true => self.axis_to_machine(axis, value),
+            true => self.turned(axis, self.axis_to_machine(axis, value), here),
             false => here + if self.is_reversed(axis) { -value } else { value },
+        }
+    }
+
+    /// Where an axis that turns comes to, whose place is programmed absolutely.
+    pub fn turned(&self, axis: Axis, end: f64, here: f64) -> f64 {
+        match self.turns[axis] {
+            None => end,
+            Some(turning) => turning.end(self.way, end, here),
         }
     }
 

@@ -64,6 +64,8 @@ fn end(words: &Words, modal: &mut Modal, here: &Position) -> Position {
         let stays = words.axes[axis].is_none() && !(moves_in_plane && plane.contains(axis));
         if stays {
             end[axis] = here[axis];
+        } else if modal.is_absolute && words.axes[axis].is_some() {
+            end[axis] = modal.turned(axis, end[axis], here[axis]);
         }
     }
     end
@@ -149,6 +151,9 @@ fn programmed(modal: &Modal, curve: &Curve, here: &Position, end: &Position) -> 
     let feed = match modal.feed_kind {
         FeedKind::Time if modal.feed > 0.0 => curve.length(here, end) / modal.feed * 60.0,
         FeedKind::PerMinute | FeedKind::Time => modal.feed,
+        FeedKind::PerTurn if modal.cuts => {
+            return wrong("a feed per revolution needs a speed in revolutions: G97");
+        }
         FeedKind::PerTurn => {
             let spindle = usize::from(modal.feeds.spindle.max(1) - 1);
             let rpm = modal.speeds.get(spindle).copied().unwrap_or(0.0);

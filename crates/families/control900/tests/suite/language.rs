@@ -43,3 +43,39 @@ fn a_program_runs_with_the_parameters_of_its_control() {
     );
     assert_eq!(rig.control.messages(), []);
 }
+
+/// M26: P8715 ends the way to X 100 within the ramp, P8695 gets the number of the block, and the program goes on after it from
+/// where X stands: G1 and F of the block stay in force [002:3717-3727].
+#[test]
+fn p8715_ends_the_way_of_m26() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\n"));
+    rig.start_text("N10 G1 X40 F6000\nN20 X100 F3000 M26\nN30 G91 Y10\nN40 G90 X0\nN50 M30\n");
+    // Before its block the signal does nothing.
+    rig.until(|rig| rig.exact("P12151") > 20.0);
+    rig.plc("P8715", "1");
+    rig.until(|rig| rig.exact("P12151") > 60.0);
+    rig.plc("P8715", "0");
+    let from = rig.exact("P12151");
+    rig.plc("P8715", "1");
+    assert_eq!(rig.read("P8695"), 20.0);
+    rig.until(|rig| rig.read("P8901") == 30.0);
+    // 50 mm/s brake on a ramp of 250 ms to 100 mm/s: 3.125 mm, begun within a cycle of 4 ms.
+    let way = rig.exact("P12151") - from;
+    assert!((3.1..3.5).contains(&way), "{way}");
+    rig.until(|rig| rig.read("P8938") > 2990.0);
+    rig.until(|rig| rig.read("P8901") == 40.0);
+    assert_eq!(rig.read("P12351"), 10.0);
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 10.0));
+    assert_eq!(rig.control.messages(), []);
+
+    // Without the signal, and with one after its end, the way is gone to its end.
+    rig.plc("P8715", "0");
+    rig.start_text("N10 G1 X50 F3000 M26\nN20 X60\nN30 M30\n");
+    rig.until(|rig| rig.read("P8901") == 20.0);
+    assert_eq!(rig.exact("P12151").floor(), 50.0);
+    rig.plc("P8715", "1");
+    rig.until_end(1);
+    assert_eq!(rig.read("P12151"), 60.0);
+    assert_eq!(rig.read("P8695"), 20.0, "the earlier one");
+}

@@ -175,10 +175,14 @@ fn the_standard_answer_changes_the_tool() {
     assert_eq!(after, [5.5, 2.0, 8.0, 0.0]);
 }
 
-/// P8690 sends an M function by hand.
+/// P8690 sends an M function by hand: in HAND alone [002:3714-3715].
 #[test]
 fn an_m_function_goes_out_by_hand() {
     let mut rig = Rig::on(EXAMPLE);
     rig.operator("P8690", "4");
     assert_eq!(rig.control.transfers().next().map(|transfer| transfer.m), Some(4));
+    rig.operator("P8683", "2");
+    rig.seconds(0.05);
+    rig.operator("P8690", "4");
+    assert_eq!(rig.control.transfers().count(), 1);
 }

@@ -190,6 +190,23 @@ fn the_override_acts_on_the_path() {
     assert_eq!(rig.read("P11310"), 55.0);
 }
 
+/// P8817 = 4500 takes the place of F 3000 until the end of its block, with the override of 50 %; the next block has F 3000 again
+/// [002:4294-4296].
+#[test]
+fn p8817_is_the_feed_of_its_block() {
+    let mut rig = Rig::on("q1313: 100\n");
+    rig.plc("P11311", "127.5");
+    let line = |x: f64| Line::to(&[(Axis::X, x)], 3000.0);
+    rig.start(1, &[line(100.0), line(200.0)]);
+    rig.until(|rig| rig.exact("P12151") > 20.0);
+    assert!((rig.read("P8938") - 1500.0).abs() < 0.1, "{}", rig.read("P8938"));
+    rig.plc("P8817", "4500");
+    rig.until(|rig| rig.exact("P12151") > 60.0);
+    assert!((rig.read("P8938") - 2250.0).abs() < 0.1, "{}", rig.read("P8938"));
+    rig.until(|rig| rig.exact("P12151") > 130.0);
+    assert!((rig.read("P8938") - 1500.0).abs() < 0.1, "{}", rig.read("P8938"));
+}
+
 /// A clone goes on with the same bits.
 #[test]
 fn a_clone_goes_on_alike() {

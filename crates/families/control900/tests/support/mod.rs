@@ -162,6 +162,24 @@ impl Rig {
         self.until(|rig| rig.read(&format!("{channel}:P8685")) == 2.0);
     }
 
+    /// A program of channel 1 in the language of the control, started by the operator.
+    pub fn start_text(&mut self, text: &str) {
+        self.load_text(text);
+        self.operator("P8683", "2");
+        self.seconds(0.05);
+        self.operator("P8682", "2");
+        self.until(|rig| rig.read("P8685") == 2.0);
+    }
+
+    /// The program of channel 1 in the language of the control.
+    pub fn load_text(&mut self, text: &str) {
+        let beside = std::sync::Arc::new(bahn_text::MemoryFiles::default());
+        let zero = bahn_path::Position::ZERO;
+        let program = bahn_interpreter900::Reader900::new("P1000.900", text.as_bytes(), 1, zero, beside);
+        self.operator("P8800", "1000");
+        self.control.set_program(1, Some(Box::new(program)));
+    }
+
     /// The program of a channel.
     pub fn load(&mut self, channel: u8, lines: &[Line]) {
         self.operator(&format!("{channel}:P8800"), "1000");

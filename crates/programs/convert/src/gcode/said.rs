@@ -361,7 +361,10 @@ impl Sayer {
             Function::Superimpose(_) => {
                 self.leave_out(block, "M118: LinuxCNC superimposes no handwheel by a program");
             }
-            Function::Write { .. } | Function::Shift { .. } | Function::Branch { .. } => {
+            Function::Write { .. }
+            | Function::Shift { .. }
+            | Function::Branch { .. }
+            | Function::Residual => {
                 self.refuse(block, "LinuxCNC has no parameters and branches of a System 900");
             }
             // The angle stands beside M19; LinuxCNC executes one line after the other.

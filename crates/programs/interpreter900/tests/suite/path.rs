@@ -144,3 +144,34 @@ fn what_is_not_executed_is_named() {
         assert_eq!(fault(text), said);
     }
 }
+
+/// C goes round: P12001 = 2 the shortest way, 3 as G5, G6 and G7 say [002:6905-6916]. From 0 to 350 to 10 to 200 degrees, each
+/// way counted on.
+#[test]
+fn axes_that_turn_go_their_way() {
+    for (kind, word, ways) in [
+        ("2", "G5", [-10.0, 10.0, -160.0]),
+        ("3", "G7", [-10.0, 10.0, -160.0]),
+        ("3", "G5", [350.0, 370.0, 560.0]),
+        ("3", "G6", [-10.0, -350.0, -520.0]),
+        ("1", "G6", [350.0, 10.0, 200.0]),
+    ] {
+        for turned in ["", "G45 "] {
+            let text = format!("{word} {turned}G1 F100 C350\nC10\nC200\n");
+            let found = ran_with(&text, &format!("P12601: {kind}\n"));
+            let found: Vec<f64> = found
+                .elements
+                .iter()
+                .map(|one| (one.end[Axis::C] * 1e6).round() / 1e6)
+                .collect();
+            assert_eq!(found, ways, "{kind} {text}");
+        }
+    }
+    // A turn of 100 degrees, P12041; G91 goes as it says, and where it stands it need not go.
+    let found = ran_with(
+        "G1 F100 C90\nG91 C250\nG90 C-60\nC45\n",
+        "P12601: 2\nP12641: 100\n",
+    );
+    let found: Vec<f64> = found.elements.iter().map(|one| one.end[Axis::C]).collect();
+    assert_eq!(found, [-10.0, 240.0, 245.0]);
+}

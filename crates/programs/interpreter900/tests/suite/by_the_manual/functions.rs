@@ -65,6 +65,64 @@ fn the_speed_goes_out_before_the_movement() {
 #[test]
 fn what_nobody_defines_is_refused() {
     assert_eq!(fault("", "N10 M55\nN20 M30\n"), "M55 is defined nowhere: P11063");
-    let said = fault("", "N10 M26 G1 X1 F1\n");
-    assert!(said.ends_with("M26 is not executed here"), "{said}");
+}
+
+/// M26 stops the look-ahead: where its way ends only the machine knows. What needs the end of the way stands elsewhere.
+#[test]
+fn m26_reads_nothing_after_its_block() {
+    let ran = run(&mut reader(M_TABLE, "N10 M26 G1 X1 F1\nN20 X2\n"));
+    assert_eq!(ran.elements[0].functions()[0].function, Function::Residual);
+    assert!(matches!(ran.barriers.as_slice(), [Barrier::Acknowledge { .. }]));
+    for (block, said) in [
+        ("N10 M26", "M26 stands in a block that moves, and drills nothing"),
+        (
+            "N10 M26 G1 X1 F1 M5",
+            "M26 beside an M function that goes out after the path",
+        ),
+        (
+            "N10 M26 G1 X1 F1 M30",
+            "M26 beside what ends, repeats or leaves its block",
+        ),
+    ] {
+        assert!(fault(M_TABLE, &format!("{block}\n")).ends_with(said), "{block}");
+    }
+}
+
+/// q142 and q143 give the words S and S2 to the spindles 1 and 4, of which P11648 and P11708 are the speeds, P11647 and P11707
+/// their kinds [002:858-881] [002:6592-6594].
+#[test]
+fn speeds_go_to_their_spindles() {
+    const SPINDLES: &str = "q142: 1\nq143: 4\n";
+    let writes = |program: &str| {
+        let ran = run(&mut reader(SPINDLES, program));
+        assert_eq!(ran.fault, None, "{program}");
+        let functions = ran.elements.iter().flat_map(|element| element.functions());
+        // Speeds and what is shown of them lie above q2000.
+        let writes = functions.filter_map(|own| match own.function {
+            Function::Write { q, value } if q < 2000 => Some((q, value)),
+            _ => None,
+        });
+        writes.collect::<Vec<_>>()
+    };
+    assert_eq!(writes("N10 S2:700\n"), [(1708, Some(700.0))]);
+    assert_eq!(writes("N10 G96 S150\n"), [(1647, Some(96.0))]);
+    assert_eq!(
+        writes("N10 G96 S2:150\nN20 G97\n"),
+        [(1707, Some(96.0)), (1708, Some(150.0)), (1647, Some(97.0))]
+    );
+    // P8981 shows it where the block is executed: the fixed parameters begin at q15000 with P7000.
+    let ran = run(&mut reader(SPINDLES, "N10 G96 S150\n"));
+    let shown = Function::Write {
+        q: 15_000 + 1981,
+        value: Some(96.0),
+    };
+    let mut functions = ran.elements.iter().flat_map(|element| element.functions());
+    assert!(functions.any(|own| own.function == shown));
+    let without = "G96 needs a spindle: q142 to q149 name none";
+    assert!(fault("", "N10 G96 S1\n").ends_with(without));
+    let said = fault(SPINDLES, "N10 G96 S1\nN20 G95 G1 X1 F0.1\n");
+    assert!(
+        said.ends_with("a feed per revolution needs a speed in revolutions: G97"),
+        "{said}"
+    );
 }
