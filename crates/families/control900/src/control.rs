@@ -4,7 +4,7 @@ use bahn_kernel::{Clock, Feeder, RunState};
 use bahn_path::{BlockRef, PathElement};
 use bahn_reader::{Reader, Warning};
 use bahn_servo::{Commands, Plant};
-use bahn_system900::{Memory, Name, Receivers, SpaceError, Value};
+use bahn_system900::{Memory, Name, Receivers, SpaceError, Value, Writer};
 
 use crate::channel::{Channel, Mode};
 use crate::language::Language;
@@ -108,7 +108,19 @@ impl Control900 {
     /// When the name leads nowhere, the value does not go in, or a lock that is set locks the parameter: then nothing is
     /// written.
     pub fn write_operator(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
-        let receivers = self.machine.memory.enter(name, value)?;
+        self.write_as(Writer::Editor, name, value)
+    }
+
+    /// The same with keys, or at a page for axes, zero points or tools.
+    ///
+    /// # Errors
+    /// As [`Control900::write_operator`]; the lock of the parameter editor holds nothing back.
+    pub fn write_panel(&mut self, name: Name, value: Value) -> Result<Receivers, SpaceError> {
+        self.write_as(Writer::Page, name, value)
+    }
+
+    fn write_as(&mut self, writer: Writer, name: Name, value: Value) -> Result<Receivers, SpaceError> {
+        let receivers = self.machine.memory.enter_as(writer, name, value)?;
         let place = self.machine.memory.place(name)?;
         command::notice(&mut self.machine, place);
         Ok(receivers)
