@@ -39,7 +39,6 @@
 mod console;
 mod entry;
 mod inhibit;
-mod input;
 mod live;
 mod page;
 mod pages;
@@ -51,12 +50,12 @@ mod shortcuts;
 mod site;
 mod station;
 mod status;
-mod steps;
 mod to_enter;
 mod transfer;
 
 pub use bahn_dialogue::{Key, KeyGroup};
 pub use bahn_graphics::{BeingCut, Picture, PictureError};
+pub use bahn_live::{EMERGENCY_STOP, Input, InputText, Refusal, Seen, Stepped, StepsEnd, TransferNews};
 pub use bahn_machine::{Button, KeyAction};
 pub use bahn_path::Switch;
 pub use bahn_screen::texts::{Language, around, filled, language_code, language_of_code, texts_around};
@@ -68,16 +67,14 @@ pub use bahn_screen::{
 pub use bahn_teaching::drawer::{Breakable, Breaking};
 pub use bahn_teaching::lesson::{Lesson, LessonRun, check_lesson};
 pub use bahn_why::{Reason, Urgency, Waits, in_words};
-pub use input::{EMERGENCY_STOP, Input, InputText, Refusal};
-pub use live::{Link, Live, Seen};
+pub use live::{Link, Live, live_replay};
 pub use replay::{Ending, Replay, check_session};
 pub use session::{Head, Recorder};
 pub use settings::PositionType;
 pub use shortcuts::{Press, SHORTCUTS, Shortcut, shortcut};
 pub use station::Station;
-pub use steps::{Stepped, StepsEnd};
 pub use to_enter::load;
-pub use transfer::{TransferAction, TransferFiles, TransferNews, TransferOrder};
+pub use transfer::{TransferAction, TransferFiles, TransferOrder};
 
 /// The examples of `docs/plant.md`.
 #[cfg(doctest)]

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use bahn_host::{HostError, files};
+use bahn_live::Input;
 use crc32fast::Hasher;
 
-use crate::input::Input;
 use crate::session::{EndLine, FORM, Head, InputLine, screen_sum};
 use crate::station::Station;
 

@@ -15,12 +15,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use bahn_host::{LoadedMachine, files};
+use bahn_live::{Input, InputText};
 use bahn_screen::Screen;
 use bahn_tnc::Control;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
-
-use crate::input::{Input, InputText};
 
 /// The form of the file.
 pub(crate) const FORM: u32 = 1;

@@ -5,7 +5,6 @@
 
 mod chosen;
 mod commissioning;
-mod passing;
 mod teaching;
 mod transfers;
 mod warm_start;
@@ -19,6 +18,7 @@ use std::time::Duration;
 use bahn_dialogue::Key;
 use bahn_graphics::{BeingCut, Graphics, Picture};
 use bahn_host::{Action, Answer, AnyPlant, Clock, Host, HostError, LoadedMachine, Operable, PowerOn, Source};
+use bahn_live::{EMERGENCY_STOP, Input, Passing, Refusal, Steps, StepsEnd, Ticket};
 use bahn_machine::KeyAction;
 use bahn_parameters::{MessageId, ParameterList};
 use bahn_path::Switch;
@@ -32,16 +32,13 @@ use bahn_why::{Waits, in_words};
 
 use crate::console::Console;
 use crate::inhibit::{self, Simulated};
-use crate::input::{EMERGENCY_STOP, Input, Refusal};
 use crate::plc_mode::PlcMode;
 use crate::session::Recorder;
 use crate::site::Site;
-use crate::steps::{Steps, StepsEnd, Ticket};
 use crate::to_enter::{Commissioning, operator_of};
 use crate::transfer::{TransferOrder, Transfers};
 use crate::{pages, status};
 use chosen::Chosen;
-use passing::Passing;
 use warm_start::WarmStart;
 
 /// Lines of the large window, and of one beside it.
@@ -50,8 +47,6 @@ const LINES: usize = 16;
 const SCREEN_REPORTED_US: u64 = 50_000;
 /// Stands in the status window while a logic diagram is recorded [000:11466].
 const RECORDING: &str = "PCTR";
-/// Factors by which time may pass.
-const SPEEDS: std::ops::RangeInclusive<f64> = 0.1..=100.0;
 
 /// A machine that is on, and its panel. It has no clock of its own: [`Station::cycle`] is one contour cycle. Its plant is
 /// the simulated machine of the folder, or any other one that can be operated.
@@ -587,7 +582,7 @@ impl Station {
             knobs: plant.knobs(),
             held: plant.held_keys().into_iter().map(str::to_owned).collect(),
             handwheel: self.handwheel(),
-            speed: self.passing.speed,
+            speed: self.passing.speed(),
             paused: self.passing.paused,
         }
     }
@@ -648,14 +643,7 @@ impl Station {
     }
 
     fn set_speed(&mut self, factor: f64) -> Result<(), Refusal> {
-        if !SPEEDS.contains(&factor) {
-            return Err(Refusal(format!(
-                "time passes {} to {} times as fast, not {factor}",
-                SPEEDS.start(),
-                SPEEDS.end()
-            )));
-        }
-        self.passing.speed = factor;
+        self.passing.set_speed(factor)?;
         self.host.set_clock(self.clock());
         Ok(())
     }

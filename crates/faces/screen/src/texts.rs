@@ -14,6 +14,7 @@ const GERMAN: &[&str] = &[
     include_str!("../texts/messages-de.tsv"),
     include_str!("../texts/causes-de.tsv"),
     include_str!("../texts/de-teaching.tsv"),
+    include_str!("../texts/de-system900.tsv"),
 ];
 
 /// What stands around the screen, in the page and in the terminal.

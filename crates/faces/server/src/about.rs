@@ -1,6 +1,6 @@
 //! What does not change while a station is on.
 
-use bahn_service::{Key, Machine, Press, SHORTCUTS, Shortcut};
+use bahn_service::{Presses, Surface, SurfaceShortcut};
 use serde::Serialize;
 
 /// What does not change while a station is on.
@@ -16,6 +16,10 @@ pub(crate) struct About {
     machine_keys: Vec<String>,
     /// Axes that a handwheel can move.
     axes: String,
+    /// There is a time line; there are lessons; the part is shown.
+    has_past: bool,
+    has_teacher: bool,
+    has_part: bool,
     /// What keys of a real keyboard do.
     shortcuts: Vec<ShortcutText>,
     /// The version of this program.
@@ -25,7 +29,7 @@ pub(crate) struct About {
 #[derive(Clone, Debug, Serialize)]
 struct KeyText {
     name: &'static str,
-    group: String,
+    group: &'static str,
     label: &'static str,
 }
 
@@ -45,7 +49,7 @@ struct ShortcutText {
 }
 
 impl ShortcutText {
-    fn of(shortcut: &Shortcut) -> ShortcutText {
+    fn of(shortcut: &SurfaceShortcut) -> ShortcutText {
         let mut text = ShortcutText {
             real: shortcut.real,
             alt: shortcut.alt,
@@ -54,11 +58,11 @@ impl ShortcutText {
             feed: None,
             spindle: None,
         };
-        match shortcut.press {
-            Press::Key(key) => text.key = Some(key.name()),
-            Press::Machine(name) => text.machine = Some(name),
-            Press::Feed(step) => text.feed = Some(step),
-            Press::Spindle(step) => text.spindle = Some(step),
+        match shortcut.does {
+            Presses::Key(name) => text.key = Some(name),
+            Presses::Machine(name) => text.machine = Some(name),
+            Presses::Feed(step) => text.feed = Some(step),
+            Presses::Spindle(step) => text.spindle = Some(step),
         }
         text
     }
@@ -66,23 +70,22 @@ impl ShortcutText {
 
 impl About {
     /// What does not change about a machine.
-    pub fn of(machine: &Machine) -> About {
-        let key = |key: &Key| KeyText {
-            name: key.name(),
-            group: format!("{:?}", key.group()).to_lowercase(),
-            label: key.label(),
-        };
-        let is_there = |shortcut: &&Shortcut| match shortcut.press {
-            Press::Key(key) => machine.keyboard.contains(&key),
-            _ => true,
-        };
+    pub fn of(surface: Surface) -> About {
+        let keys = surface.keys.iter().map(|key| KeyText {
+            name: key.name,
+            group: key.group,
+            label: key.label,
+        });
         About {
-            machine: machine.name.clone(),
-            model: machine.model.name().to_owned(),
-            keys: machine.keyboard.iter().map(key).collect(),
-            machine_keys: machine.machine_keys.clone(),
-            axes: machine.axes.clone(),
-            shortcuts: SHORTCUTS.iter().filter(is_there).map(ShortcutText::of).collect(),
+            keys: keys.collect(),
+            shortcuts: surface.shortcuts.iter().map(ShortcutText::of).collect(),
+            machine: surface.name,
+            model: surface.model,
+            machine_keys: surface.machine_keys,
+            axes: surface.axes,
+            has_past: surface.has_past,
+            has_teacher: surface.has_teacher,
+            has_part: surface.has_part,
             version: env!("CARGO_PKG_VERSION"),
         }
     }

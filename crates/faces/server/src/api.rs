@@ -1,12 +1,14 @@
 //! What programs ask for: docs/panel-api.md.
 
+use std::sync::Arc;
+
 use axum::Json;
 use axum::extract::{Extension, Query, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use bahn_service::{
-    Input, InputText, MachineService, Refusal, Role, ServiceError, Stepped, language_code, language_of_code,
+    Input, InputText, Operated, Refusal, Role, ServiceError, Stepped, language_code, language_of_code,
     texts_around,
 };
 use serde::{Deserialize, Serialize};
@@ -46,12 +48,17 @@ pub(crate) async fn screen(State(shared): State<Shared>) -> Response {
 
 /// `GET /api/snapshot`: the numbers behind the screen.
 pub(crate) async fn snapshot(State(shared): State<Shared>) -> Response {
-    asked(shared, MachineService::state).await
+    let machine = shared.machine;
+    match tokio::task::spawn_blocking(move || machine.state_json()).await {
+        Ok(Ok(state)) => ([(CONTENT_TYPE, "application/json")], state).into_response(),
+        Ok(Err(error)) => refused(&error),
+        Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
+    }
 }
 
 /// `GET /api/drawer`: what can be broken.
 pub(crate) async fn drawer(State(shared): State<Shared>) -> Response {
-    asked(shared, MachineService::drawer).await
+    asked(shared, |machine| machine.drawer()).await
 }
 
 /// `GET /api/lessons`: the lessons of the machine.
@@ -67,10 +74,10 @@ pub(crate) async fn lessons(State(shared): State<Shared>) -> Response {
 /// What the machine says.
 async fn asked<T: Serialize + Send + 'static>(
     shared: Shared,
-    what: impl FnOnce(&MachineService) -> Result<T, ServiceError> + Send + 'static,
+    what: impl FnOnce(&dyn Operated) -> Result<T, ServiceError> + Send + 'static,
 ) -> Response {
     let machine = shared.machine;
-    match tokio::task::spawn_blocking(move || what(&machine)).await {
+    match tokio::task::spawn_blocking(move || what(machine.as_ref())).await {
         Ok(Ok(said)) => Json(said).into_response(),
         Ok(Err(error)) => refused(&error),
         Err(_) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
@@ -107,7 +114,7 @@ pub(crate) async fn graphics(State(shared): State<Shared>, Query(size): Query<Si
         let why = format!("a picture has {PIXELS} pixels at most, and {SIDE} along a side");
         return (StatusCode::BAD_REQUEST, why).into_response();
     }
-    let machine = shared.machine.clone();
+    let machine = Arc::clone(&shared.machine);
     let drawn = shared.pictures.draw(move || {
         let picture = machine.picture()?;
         Ok::<_, ServiceError>(picture.map(|picture| picture.png(size.width, size.height)))
@@ -131,7 +138,7 @@ pub(crate) async fn input(
     Extension(role): Extension<Role>,
     body: String,
 ) -> Response {
-    let machine = shared.machine.with_role(role);
+    let machine = shared.machine.for_role(role);
     let input = serde_json::from_str::<InputText>(&body)
         .map_err(|error| Refusal(error.to_string()))
         .and_then(Input::try_from);

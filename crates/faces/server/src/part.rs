@@ -7,7 +7,7 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use bahn_service::{BeingCut, MachineService};
+use bahn_service::{BeingCut, Operated};
 use bahn_viewer::{PartStream, Sent};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
@@ -69,7 +69,7 @@ type Region = Vec<u8>;
 
 impl PartFeed {
     /// Follows the part of a station while somebody looks, on a thread of its own.
-    pub fn start(machine: MachineService) -> PartFeed {
+    pub fn start(machine: Arc<dyn Operated>) -> PartFeed {
         let shared = Arc::new(Shared {
             viewers: Mutex::default(),
             wanted: Condvar::new(),
@@ -77,7 +77,7 @@ impl PartFeed {
         });
         let (sender, news) = watch::channel(0);
         let own = Arc::clone(&shared);
-        std::thread::spawn(move || own.follow(&machine, &sender));
+        std::thread::spawn(move || own.follow(machine.as_ref(), &sender));
         PartFeed { shared, news }
     }
 
@@ -97,7 +97,7 @@ impl PartFeed {
 }
 
 impl Shared {
-    fn follow(&self, machine: &MachineService, sender: &watch::Sender<u64>) {
+    fn follow(&self, machine: &dyn Operated, sender: &watch::Sender<u64>) {
         while !sender.is_closed() {
             let viewers = lock(&self.viewers);
             let waited = self

@@ -7,7 +7,7 @@ use std::time::Duration;
 use axum::Router;
 use axum::middleware;
 use axum::routing::{any, get, post};
-use bahn_service::{MachineService, Tokens};
+use bahn_service::{Operated, Tokens};
 use tokio::net::{TcpListener, TcpSocket};
 use tokio::runtime::Runtime;
 use tokio::sync::{Semaphore, watch};
@@ -83,7 +83,8 @@ impl Server {
     ///
     /// # Errors
     /// [`ServerError`].
-    pub fn start(machine: MachineService, options: ServerOptions) -> Result<Server, ServerError> {
+    pub fn start(machine: impl Operated + 'static, options: ServerOptions) -> Result<Server, ServerError> {
+        let machine: Arc<dyn Operated> = Arc::new(machine);
         options.check()?;
         let listen = options.listen;
         let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -98,9 +99,9 @@ impl Server {
             .local_addr()
             .map_err(|error| ServerError::Address(listen, error))?;
         let shared = Shared {
-            regions: follow(machine.clone()),
-            part: PartFeed::start(machine.clone()),
-            about: Arc::new(About::of(machine.machine())),
+            regions: follow(Arc::clone(&machine)),
+            part: PartFeed::start(Arc::clone(&machine)),
+            about: Arc::new(About::of(machine.surface())),
             machine,
             crew: Arc::default(),
             viewers: Arc::new(Semaphore::new(VIEWERS)),
@@ -159,7 +160,7 @@ fn router(shared: Shared) -> Router {
 }
 
 /// Encodes every screen once, on a thread of its own.
-fn follow(machine: MachineService) -> watch::Receiver<Arc<Regions>> {
+fn follow(machine: Arc<dyn Operated>) -> watch::Receiver<Arc<Regions>> {
     let (sender, receiver) = watch::channel(Arc::new(Regions::default()));
     std::thread::spawn(move || {
         let mut regions = Regions::default();

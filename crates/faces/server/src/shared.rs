@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use bahn_service::MachineService;
+use bahn_service::Operated;
 use tokio::sync::{Semaphore, watch};
 
 use crate::about::About;
@@ -16,7 +16,7 @@ use crate::regions::Regions;
 #[derive(Clone)]
 pub(crate) struct Shared {
     /// For who may operate; each request has the role of who asks.
-    pub machine: MachineService,
+    pub machine: Arc<dyn Operated>,
     pub about: Arc<About>,
     pub regions: watch::Receiver<Arc<Regions>>,
     pub part: PartFeed,

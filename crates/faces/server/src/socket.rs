@@ -244,7 +244,7 @@ impl Viewer {
         let input = serde_json::from_value::<InputText>(sent.input.into())
             .map_err(|error| Refusal(error.to_string()))
             .and_then(Input::try_from);
-        let machine = self.shared.machine.with_role(self.role);
+        let machine = self.shared.machine.for_role(self.role);
         let done = match input {
             Ok(input) => tokio::task::spawn_blocking(move || machine.input(input)).await,
             Err(refusal) => Ok(Err(refusal.into())),

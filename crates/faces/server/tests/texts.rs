@@ -76,6 +76,7 @@ fn every_text_has_its_row_and_every_row_its_text() {
             "src",
             "../terminal/src",
             "../panel/src",
+            "../panel900/src",
             "../screen/src",
             "../graphics/src",
             "../why/src",

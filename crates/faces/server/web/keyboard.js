@@ -6,6 +6,7 @@ import { say, words } from "/web/texts.js";
 /** Captions that differ from the names. */
 const CAPTIONS = {
   POINT: ".", SIGN: "+/-", UP: "▲", DOWN: "▼", LEFT: "◀", RIGHT: "▶", R_PLUS: "R+", R_MINUS: "R−",
+  COLON: ":", DOLLAR: "$", CLEARED: "--", BACK: "⌫",
   MANUAL: "Manual", HANDWHEEL: "Wheel", MDI: "MDI", SINGLE: "Single", FULL: "Full", PROGRAM: "Program", TEST: "Test",
 };
 

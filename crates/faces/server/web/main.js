@@ -21,6 +21,7 @@ const PASSING = ["part", "refused"];
 let status = null;
 let windows = null;
 let knobs = [100, 100];
+let hasPart = true;
 
 const draw = {
   time: timeline.time,
@@ -68,6 +69,8 @@ const part = new PartWindow(document.querySelector(".stage"), (looks) => {
 async function begin() {
   const [station] = await Promise.all([fetch("/api/station").then((answer) => answer.json()), texts.load()]);
   const send = (input) => connection.input(input);
+  hasPart = station.has_part;
+  leaveOut(station);
   keyboard.build(station, press, (key, down) => send({ key, down }));
   keyboard.help(station);
   keyboard.listen(station, press, (key, down) => send({ key, down }), turn);
@@ -86,6 +89,16 @@ async function begin() {
   );
 }
 
+/** What a panel has not is not shown. */
+function leaveOut(station) {
+  const parts = {
+    has_past: '[data-region="timeline"]', has_teacher: '[data-region="teacher"], [data-tab="teacher"]', has_part: '[data-key="3D_VIEW"]',
+  };
+  for (const [name, selector] of Object.entries(parts)) {
+    for (const node of document.querySelectorAll(selector)) node.hidden = !station[name];
+  }
+}
+
 /** The control speaks another language, and so does what stands around its screen. */
 async function speak(language) {
   await texts.load(language);
@@ -96,7 +109,7 @@ async function speak(language) {
 
 function press(key) {
   // A key of the page.
-  if (key === "3D_VIEW") return part.turnOn(!part.on);
+  if (key === "3D_VIEW") return hasPart ? part.turnOn(!part.on) : undefined;
   connection.input({ key });
 }
 

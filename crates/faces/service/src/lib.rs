@@ -2,6 +2,7 @@
 //!
 //! - [`MachineService`] is a handle on a machine that runs, for any thread: its [`State`], the memory of its PLC, its files,
 //!   keys and other [`Input`]s, machine parameters, the [`Screen`] as data, [`Events`] since a number;
+//! - [`Operated`] is what a page or a terminal needs of a machine of any family, [`Surface`] its keys;
 //! - each handle has a [`Role`]: who may only look changes nothing, whatever he asks for;
 //! - [`ServiceError`] says why something is not done; what the control says is in its own words;
 //! - [`LineFeed`] is what the PLC wants of the data interfaces.
@@ -40,6 +41,7 @@ mod keys;
 mod lines;
 mod log;
 mod memory;
+mod operated;
 mod parameters;
 mod service;
 mod sight;
@@ -62,5 +64,6 @@ pub use bahn_tnc::{DataLineOrder, LineEvent, LineSetup, Mode, RunState};
 pub use error::ServiceError;
 pub use lines::{LineFeed, LineNews};
 pub use log::{EVENTS, Event, EventKind, Events};
+pub use operated::{Operated, Presses, Surface, SurfaceKey, SurfaceShortcut};
 pub use service::{Machine, MachineService, plc_folder};
 pub use state::{AxisPosition, Message, RunningBlock, SpindleState, State, Tool};

@@ -1,9 +1,10 @@
 //! The part as the graphics show it, in half blocks: two pixels one above the other in each cell.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 
 use bahn_panel::Picture;
-use bahn_service::MachineService;
+use bahn_service::Operated;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Position, Rect};
 
@@ -131,13 +132,13 @@ pub(crate) struct Painter {
 
 impl Painter {
     /// Draws the graphics of a machine.
-    pub fn of(machine: MachineService) -> Painter {
+    pub fn of(machine: Arc<dyn Operated>) -> Painter {
         let (orders, ordered) = sync_channel::<Wanted>(1);
         let (sender, painted) = sync_channel(1);
         // It ends with its orders.
         std::thread::spawn(move || {
             for wanted in ordered {
-                if sender.send((wanted, paint(&machine, wanted))).is_err() {
+                if sender.send((wanted, paint(machine.as_ref(), wanted))).is_err() {
                     return;
                 }
             }
@@ -175,7 +176,7 @@ impl Painter {
 }
 
 /// Draws what the graphics show now.
-fn paint(machine: &MachineService, wanted: Wanted) -> Option<Mosaic> {
+fn paint(machine: &dyn Operated, wanted: Wanted) -> Option<Mosaic> {
     mosaic(&machine.picture().ok()??, wanted)
 }
 

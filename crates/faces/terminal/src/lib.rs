@@ -14,7 +14,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! bahn_terminal::check()?;
 //! let live = Live::start(Station::power_on(load("machines/mill".as_ref())?)?);
-//! bahn_terminal::show(&MachineService::of(&live)?, || live.has_ended())?;
+//! bahn_terminal::show(MachineService::of(&live)?, || live.has_ended())?;
 //! live.end()?;
 //! # Ok(())
 //! # }

@@ -1,6 +1,7 @@
 //! The machine operating panel: its keys, and the letters that press them.
 
 use bahn_panel::{EMERGENCY_STOP, Key};
+use bahn_service::Surface;
 
 /// Letters of the machine's keys in their order.
 const LETTERS: &str = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -19,12 +20,18 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// What is shown of a machine here.
-    pub fn of(machine: &bahn_service::Machine) -> Machine {
+    /// What is shown of a machine here. Keys that no letter of the keyboard names are pressed as those of the machine are.
+    pub fn of(surface: &Surface) -> Machine {
+        let named = surface
+            .keys
+            .iter()
+            .map(|key| (key.name, Key::from_name(key.name)));
+        let (known, own): (Vec<_>, Vec<_>) = named.partition(|(_, key)| key.is_some());
+        let own = own.into_iter().map(|(name, _)| name.to_owned());
         Machine {
-            name: machine.name.clone(),
-            keyboard: machine.keyboard.clone(),
-            keys: machine.machine_keys.clone(),
+            name: surface.name.clone(),
+            keyboard: known.into_iter().filter_map(|(_, key)| key).collect(),
+            keys: surface.machine_keys.iter().cloned().chain(own).collect(),
         }
     }
 

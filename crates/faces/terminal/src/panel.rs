@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use bahn_panel::{Input, Screen};
-use bahn_service::MachineService;
+use bahn_service::Operated;
 
 use crate::TerminalError;
 use crate::desk::{Desk, let_go};
@@ -35,10 +35,10 @@ pub fn check() -> Result<(), TerminalError> {
 ///
 /// # Errors
 /// [`TerminalError`]
-pub fn show(machine: &MachineService, ends: impl Fn() -> bool) -> Result<(), TerminalError> {
+pub fn show(machine: impl Operated + 'static, ends: impl Fn() -> bool) -> Result<(), TerminalError> {
     check()?;
     let window = FullScreen::open()?;
-    let mut panel = Panel::new(machine.clone(), window);
+    let mut panel = Panel::new(Arc::new(machine), window);
     let shown = panel.follow(ends);
     // Nothing stays down on the machine.
     let released = let_go(&mut panel.desk);
@@ -47,7 +47,7 @@ pub fn show(machine: &MachineService, ends: impl Fn() -> bool) -> Result<(), Ter
 }
 
 struct Panel {
-    machine: MachineService,
+    machine: Arc<dyn Operated>,
     desk: Desk,
     painter: Painter,
     palette: Palette,
@@ -60,11 +60,11 @@ struct Panel {
 }
 
 impl Panel {
-    fn new(machine: MachineService, window: FullScreen) -> Panel {
-        let mut desk = Desk::new(Machine::of(machine.machine()));
+    fn new(machine: Arc<dyn Operated>, window: FullScreen) -> Panel {
+        let mut desk = Desk::new(Machine::of(&machine.surface()));
         desk.holds.reports_releases = window.reports_releases;
         Panel {
-            painter: Painter::of(machine.clone()),
+            painter: Painter::of(Arc::clone(&machine)),
             screen: machine.screen(),
             machine,
             desk,

@@ -52,7 +52,9 @@ impl Hall {
             .unwrap();
         let station = Station::power_on(load(&folder).unwrap()).unwrap();
         Hall {
-            desk: Desk::new(Machine::of(&bahn_service::Machine::of(&station))),
+            desk: Desk::new(Machine::of(&bahn_service::Surface::of(
+                &bahn_service::Machine::of(&station),
+            ))),
             station,
             part: None,
             palette: Palette::Plain,

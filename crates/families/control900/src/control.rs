@@ -115,6 +115,14 @@ impl Control900 {
         self.write(Writer::Editor, name, value)
     }
 
+    /// The same with keys, or at a page for axes, zero points or tools.
+    ///
+    /// # Errors
+    /// As [`Control900::write_operator`]; the lock of the parameter editor holds nothing back.
+    pub fn write_panel(&mut self, name: Name, value: Value) -> Result<(), SpaceError> {
+        self.write(Writer::Page, name, value)
+    }
+
     /// The PLC writes a parameter, past all locks.
     ///
     /// # Errors

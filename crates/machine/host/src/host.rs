@@ -97,6 +97,11 @@ impl<P: Operable, C: HostFamily> Host<P, C> {
         self.state = None;
     }
 
+    /// What survives power-off is kept somewhere.
+    pub fn is_kept(&self) -> bool {
+        self.state.is_some()
+    }
+
     /// What survives power-off is kept there from now on.
     pub fn keep_in(&mut self, state: C::State) {
         self.state = Some(state);

@@ -51,6 +51,8 @@ ChannelParameter {
     AxisCount = 8551,
     /// P8552: its highest logical axis.
     LastAxis = 8552,
+    /// P8555: the work area [002:3432].
+    WorkArea = 8555,
     /// P8559: the block waits for an M function with stop.
     WaitsForM = 8559,
     /// P8579: all reference points are taken.
@@ -161,5 +163,7 @@ ChannelParameter {
     ActualFeed = 8938,
     /// P8940: rapid, line, circle.
     Interpolation = 8940,
+    /// P9369: the zero point that acts [002:5116-5118].
+    ZeroPoint = 9369,
 }
 }

@@ -6,12 +6,15 @@
 use crate::array::Cell;
 use crate::axis_block::AxisParameter;
 use crate::memory::{Memory, Place};
+use crate::name::Name;
 use crate::numbered::parameters;
 use crate::numbers::{COUPLING_BLOCK, COUPLINGS_MAX, SHARED, SPINDLE_WORDS};
 
 parameters! {
 /// A parameter that all channels share.
 SharedParameter {
+    /// P11130: the language of the texts [002:5663-5665].
+    Language = 11130,
     /// P11301: the interpolation cycle, ms.
     CycleTime = 11301,
     /// P11310: override 1, %: five parameters each.
@@ -108,6 +111,11 @@ pub struct SpindleBlock {
     pub tolerance_percent: Option<f64>,
 }
 
+/// The name of one that comes so many after a parameter.
+fn shared_name(of: SharedParameter, after: u32) -> Name {
+    Name::P(1, of.number() + after)
+}
+
 /// The override whose potentiometer a system parameter is.
 pub(crate) fn override_at(number: u32) -> Option<u8> {
     let first = SharedParameter::Override.number() - SHARED.0 + SHARED.1 + 1;
@@ -151,6 +159,32 @@ impl Memory {
             .unwrap_or(3)
     }
 
+    /// The second language is selected, P11130 [002:5663-5665].
+    pub fn has_second_language(&self) -> bool {
+        self.shared_cell(SharedParameter::Language, 0).whole() == Some(1)
+    }
+
+    /// How the potentiometer of an override stands, 1 to 4: the parameter that the panel writes [002:6376].
+    pub fn override_name(&self, number: u8) -> Name {
+        let at = u32::from(number.clamp(1, FREE_OVERRIDES) - 1) * OVERRIDE_BLOCK + 1;
+        shared_name(SharedParameter::Override, at)
+    }
+
+    /// Where its potentiometer has to stand so that an override, 1 to 4, comes nearest to so many %.
+    pub fn override_raw(&self, number: u8, percent: f64) -> u8 {
+        let at = u32::from(number.clamp(1, FREE_OVERRIDES) - 1) * OVERRIDE_BLOCK;
+        let far = |raw: u8| (self.percent_at(at, raw.into()) - percent).abs();
+        (0..=u8::MAX)
+            .min_by(|a, b| far(*a).total_cmp(&far(*b)))
+            .unwrap_or(u8::MAX)
+    }
+
+    /// What a handwheel, 1 to 8, has written: the axis that it moves, whether it acts, its multiplier [002:6297-6360].
+    pub fn handwheel_names(&self, number: u8) -> [Name; 3] {
+        let at = u32::from(number.saturating_sub(1)).min(HANDWHEELS - 1) * HANDWHEEL_BLOCK;
+        [1, 2, 4].map(|offset| shared_name(SharedParameter::Handwheel, at + offset))
+    }
+
     /// An override, %, 1 to 8: as its potentiometer stands, through the table, within its limits [002:6200-6290]. One that was
     /// never written is 100 %, and so is one that is none (inferred).
     pub fn override_percent(&self, number: u8) -> f64 {
@@ -164,6 +198,12 @@ impl Memory {
         }
         let of = |offset: u32| self.shared_cell(SharedParameter::Override, at + offset).number();
         let Some(raw) = of(1) else { return 100.0 };
+        self.percent_at(at, raw)
+    }
+
+    /// What the override at a place gives where its potentiometer stands, %.
+    fn percent_at(&self, at: u32, raw: f64) -> f64 {
+        let of = |offset: u32| self.shared_cell(SharedParameter::Override, at + offset).number();
         let raw = raw.clamp(0.0, RAW_MAX);
         let percent = match of(4).filter(|pointer| *pointer != 0.0) {
             Some(_) => self.tabled(raw),

@@ -41,6 +41,25 @@ pub enum KeyGroup {
 }
 
 impl KeyGroup {
+    /// Its name in lower case, as a page writes it: `mode`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            KeyGroup::Mode => "mode",
+            KeyGroup::Files => "files",
+            KeyGroup::Cursor => "cursor",
+            KeyGroup::Contour => "contour",
+            KeyGroup::Tool => "tool",
+            KeyGroup::Cycle => "cycle",
+            KeyGroup::Graphics => "graphics",
+            KeyGroup::Axis => "axis",
+            KeyGroup::Number => "number",
+            KeyGroup::Value => "value",
+            KeyGroup::Entry => "entry",
+            KeyGroup::Letter => "letter",
+            KeyGroup::Soft => "soft",
+        }
+    }
+
     /// All groups in the order of the table.
     pub const ALL: &[KeyGroup] = &[
         KeyGroup::Mode,

@@ -1,6 +1,7 @@
 //! `bahn panel`: the operating panel of a machine that is on.
 
 mod options;
+mod system900;
 
 pub(crate) use options::{EXAMPLES, PanelOptions};
 
@@ -10,8 +11,8 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use bahn_host::files::NewFile;
-use bahn_host::{HostError, LoadedMachine, PowerOn};
-use bahn_panel::{Input, Live, Replay, Station};
+use bahn_host::{HostError, LoadedMachine, Machine900, PowerOn};
+use bahn_panel::{Input, Live, Replay, Station, live_replay};
 use bahn_ports::{PanelPorts, RunningPorts};
 use bahn_server::{Server, ServerOptions, Tokens};
 use bahn_service::MachineService;
@@ -53,6 +54,9 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
         Some(folder) => folder.clone(),
         None => own_mill()?,
     };
+    if Machine900::is_meant(&folder) {
+        return system900::command(options, &folder, served);
+    }
     let machine: LoadedMachine = match machine_folder::load_to_enter(&folder)? {
         Ok(machine) => machine,
         Err(faults) => {
@@ -76,30 +80,47 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     }
     let interrupt = Interrupt::on_ctrl_c();
     let desk = Desk::open(begin(station, options)?, served, ports, options)?;
-    if let Some(address) = desk.page(options) {
-        let ends = match options.in_the_terminal() {
-            true => "",
-            false => "; Ctrl-C switches the machine off",
-        };
-        diagnostics::print_text(&format!("{name}: the panel is at {address}{ends}"));
-        if options.open {
-            open(&address);
-        }
+    if let Some(server) = &desk.server {
+        options.say_page(&name, server);
     }
     let shown = match options.in_the_terminal() {
-        true => terminal::show(&desk.machine, || {
+        true => terminal::show(desk.machine.clone(), || {
             interrupt.is_requested() || desk.live.has_ended()
         }),
         false => {
-            while !interrupt.is_requested() {
-                std::thread::sleep(LOOK);
-            }
+            until_ctrl_c(&interrupt);
             Ok(())
         }
     };
     // Whatever became of the terminal, what was done is kept.
     desk.end()?;
     shown.map(|()| Outcome::Fine)
+}
+
+impl PanelOptions {
+    /// Says where a browser finds the page, with the token, and opens it when that is wanted.
+    fn say_page(&self, name: &str, server: &Server) {
+        let address = server.address();
+        let address = match &self.token {
+            Some(token) => format!("http://{address}/?token={token}"),
+            None => format!("http://{address}/"),
+        };
+        let ends = match self.in_the_terminal() {
+            true => "",
+            false => "; Ctrl-C switches the machine off",
+        };
+        diagnostics::print_text(&format!("{name}: the panel is at {address}{ends}"));
+        if self.open {
+            open(&address);
+        }
+    }
+}
+
+/// Waits for Ctrl-C.
+fn until_ctrl_c(interrupt: &Interrupt) {
+    while !interrupt.is_requested() {
+        std::thread::sleep(LOOK);
+    }
 }
 
 /// A station that runs, with its data interfaces, and served or not.
@@ -145,15 +166,6 @@ impl Desk {
         Ok((machine, ports, server))
     }
 
-    /// Where a browser finds the page, with the token.
-    fn page(&self, options: &PanelOptions) -> Option<String> {
-        let address = self.server.as_ref()?.address();
-        Some(match &options.token {
-            Some(token) => format!("http://{address}/?token={token}"),
-            None => format!("http://{address}/"),
-        })
-    }
-
     /// Ends; what must survive is on the medium.
     fn end(self) -> Result<(), UsageError> {
         let recorded = self.live.link().with(Station::end_recording);
@@ -175,7 +187,7 @@ fn in_words(error: impl std::fmt::Display) -> UsageError {
 /// The panel in the terminal.
 #[cfg(feature = "terminal")]
 mod terminal {
-    use bahn_service::MachineService;
+    use bahn_service::Operated;
 
     use crate::UsageError;
 
@@ -183,7 +195,7 @@ mod terminal {
         bahn_terminal::check().map_err(|error| UsageError::new(error.to_string()))
     }
 
-    pub(super) fn show(machine: &MachineService, ends: impl Fn() -> bool) -> Result<(), UsageError> {
+    pub(super) fn show(machine: impl Operated + 'static, ends: impl Fn() -> bool) -> Result<(), UsageError> {
         bahn_terminal::show(machine, ends).map_err(|error| UsageError::new(error.to_string()))
     }
 }
@@ -191,7 +203,7 @@ mod terminal {
 /// Nothing asks for it in a build without it.
 #[cfg(not(feature = "terminal"))]
 mod terminal {
-    use bahn_service::MachineService;
+    use bahn_service::Operated;
 
     use crate::UsageError;
 
@@ -199,7 +211,7 @@ mod terminal {
         Err(UsageError::new("this build has no panel in the terminal"))
     }
 
-    pub(super) fn show(_: &MachineService, _: impl Fn() -> bool) -> Result<(), UsageError> {
+    pub(super) fn show(_: impl Operated + 'static, _: impl Fn() -> bool) -> Result<(), UsageError> {
         check()
     }
 }
@@ -213,7 +225,7 @@ fn begin(station: Station, options: &PanelOptions) -> Result<Live, UsageError> {
     for difference in replay.differences(&station) {
         diagnostics::print_line(&format!("warning: {difference}"));
     }
-    Ok(Live::replay(station, replay))
+    Ok(live_replay(station, replay))
 }
 
 /// Who has no browser opens the page elsewhere.

@@ -11,6 +11,7 @@ Examples:
   bahn panel --terminal                               the mill, in this terminal; ? shows the keys
   bahn panel --machine machines/mill-tnc360 --speed 5
       Another machine; time passes five times as fast.
+  bahn panel --machine machines/portal900             a machine with a System 900 (docs/system900.md)
   bahn panel --rs232 serial:/dev/ttyUSB0             EXT reads programs in and out there (docs/link.md)
   bahn panel --listen 0.0.0.0:8155 --token SECRET     for others, too; they need the token once
   bahn panel --listen 0.0.0.0:8155 --token SECRET --viewer-token CLASSROOM

@@ -122,7 +122,10 @@ fn a_wrong_plant_is_a_fault_of_the_folder() {
 #[test]
 fn what_is_for_a_tnc_says_so() {
     let folder = Folder::with_portal();
-    for command in ["panel --machine portal", "torture --machine portal --mp 7480.0=3"] {
+    for command in [
+        "panel --machine portal --rs232 pty:line",
+        "torture --machine portal --mp 7480.0=3",
+    ] {
         let run = folder.bahn(command);
         assert!(run.code() == 1 || run.code() == 2, "{command}: {}", run.code());
         assert!(run.err().contains("System 900"), "{command}: {}", run.err());

@@ -1,6 +1,7 @@
 //! A data transfer that the operator has begun: what has come and gone, what is asked, how it ends [003:6880-6930].
 
 use bahn_dialogue::Key;
+use bahn_live::TransferNews;
 use bahn_parameters::MessageId;
 use bahn_screen::{Dialogue, Line, WindowKind};
 
@@ -8,7 +9,7 @@ use crate::page::{Page, Turn, View};
 use crate::pages::list;
 use crate::pages::order::order;
 use crate::site::Site;
-use crate::transfer::{TransferAction, TransferFiles, TransferNews};
+use crate::transfer::{TransferAction, TransferFiles};
 
 /// Begins a transfer of programs and shows it.
 pub(crate) fn begin(action: TransferAction, site: &mut Site) -> Turn {

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use bahn_host::backup::Restore;
 use bahn_host::{Action, PowerOn, Source};
+use bahn_live::Refusal;
 use bahn_parameters::MessageId;
 use bahn_path::Switch;
 use bahn_screen::programs::ProgramMemory;
@@ -23,7 +24,6 @@ use bahn_why::Waits;
 
 use super::Station;
 use crate::console::Console;
-use crate::input::Refusal;
 use crate::pages;
 use crate::to_enter::{Commissioning, load, operator_of};
 

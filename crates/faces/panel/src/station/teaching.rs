@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use bahn_host::{AnyPlant, Clock, Host, LoadedMachine};
+use bahn_live::{Input, Refusal};
 use bahn_screen::texts::Language;
 use bahn_teaching::drawer::{self, Breakable};
 use bahn_teaching::lesson::{self, Driven, LessonRun};
 use bahn_why::Reason;
 
 use super::Station;
-use crate::input::{Input, Refusal};
 use crate::session::{Head, Recorder};
-use crate::steps::StepsEnd;
+use bahn_live::StepsEnd;
 
 impl Driven for Station {
     fn machine(&self) -> &LoadedMachine {

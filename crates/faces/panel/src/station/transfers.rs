@@ -1,12 +1,13 @@
 //! What happens at the data interfaces.
 
 use bahn_host::backup::Restore;
+use bahn_live::TransferNews;
 use bahn_screen::texts::{self, Language};
 
 use crate::console::Console;
 use crate::pages::{self, runs};
 use crate::site::Site;
-use crate::transfer::{TransferFiles, TransferNews};
+use crate::transfer::TransferFiles;
 
 /// Takes what has happened, and says what the operator is to know of it. A backup that was read in is what the machine
 /// becomes again.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::support::Trainee;
-use bahn_panel::{Input, InputText, Link, Live, Replay, Screen, Star};
+use bahn_panel::{Input, InputText, Link, Live, Replay, Screen, Star, live_replay};
 
 fn give(link: &Link, json: &str) {
     let text: InputText = serde_json::from_str(json).unwrap();
@@ -80,7 +80,7 @@ fn what_was_done_in_real_time_is_seen_again() {
     assert_eq!(replay.came_true(&mut other.station), Some(true));
     // And in real time.
     let (station, second) = Trainee::at("mill").apart();
-    let live = Live::replay(station, Replay::read(&path).unwrap());
+    let live = live_replay(station, Replay::read(&path).unwrap());
     let link = live.link();
     until(&link, |screen| {
         screen.machine.paused && screen.time_s == end.time_s

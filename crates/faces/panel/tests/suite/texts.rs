@@ -5,7 +5,7 @@ use std::path::Path;
 use bahn_screen::texts::{Language, translation};
 
 /// The rooms whose sources have texts of the screen.
-const ROOMS: [&str; 5] = ["panel", "screen", "graphics", "why", "teaching"];
+const ROOMS: [&str; 6] = ["panel", "panel900", "screen", "graphics", "why", "teaching"];
 
 /// Texts in the sources of these rooms: what stands in `words("...")`, and the names of soft keys in tables.
 fn used() -> Vec<String> {

@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use bahn_server::{Server, ServerOptions, Tokens};
-use bahn_service::{Live, MachineService, Station, load};
-use copy::copy;
+use bahn_service::{Live, MachineService, Operated, Station, load};
+pub use copy::copy;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -69,6 +69,21 @@ impl Panel {
         Panel {
             address: server.address(),
             live: Some(live),
+            server: Some(server),
+            folder,
+        }
+    }
+
+    /// That of a machine of any family, which somebody else ends; the folder is removed in the end.
+    pub fn of_machine(machine: impl Operated + 'static, folder: PathBuf) -> Panel {
+        let options = ServerOptions {
+            listen: "127.0.0.1:0".parse().unwrap(),
+            tokens: Tokens::default(),
+        };
+        let server = Server::start(machine, options).unwrap();
+        Panel {
+            address: server.address(),
+            live: None,
             server: Some(server),
             folder,
         }

@@ -8,8 +8,11 @@ use bahn_system900::{Name, Value};
 /// Who writes a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
-    /// The operator: locks hold him back.
+    /// The operator in the parameter editor: locks hold him back.
     Operator,
+    /// The operator with keys, and at pages for zero points and tools: the lock of the editor holds him not back there, all
+    /// others do.
+    Panel,
     /// The PLC, which no lock holds back.
     Plc,
 }
@@ -36,8 +39,9 @@ pub struct Command900 {
     written: String,
 }
 
-/// The first word of what the PLC does.
+/// The first word of what the PLC does, and of what is done with keys.
 const PLC: &str = "plc";
+const PANEL: &str = "panel";
 
 impl Command900 {
     /// The operator gives a parameter a whole number.
@@ -51,6 +55,14 @@ impl Command900 {
             },
             written: number.to_string(),
         }
+    }
+
+    /// The operator gives a parameter a value with a key, or at a page for it.
+    ///
+    /// # Errors
+    /// In words, when the value is none.
+    pub fn at_the_panel(name: Name, value: &str) -> Result<Command900, String> {
+        assignment(By::Panel, &format!("{name}={value}"))
     }
 
     /// Several of one writer: `P8682=2, 2:P8043=1`.
@@ -68,6 +80,7 @@ fn writer(text: &str) -> (By, &str) {
     let text = text.trim();
     match text.split_once(char::is_whitespace) {
         Some((PLC, rest)) => (By::Plc, rest),
+        Some((PANEL, rest)) => (By::Panel, rest),
         _ => (By::Operator, text),
     }
 }
@@ -100,8 +113,10 @@ impl FromStr for Command900 {
 
 impl fmt::Display for Command900 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.by == By::Plc {
-            write!(f, "{PLC} ")?;
+        match self.by {
+            By::Operator => {}
+            By::Panel => write!(f, "{PANEL} ")?,
+            By::Plc => write!(f, "{PLC} ")?,
         }
         write!(f, "{}={}", self.name, self.written)
     }

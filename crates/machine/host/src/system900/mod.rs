@@ -21,7 +21,7 @@ pub use command::{By, Command900};
 pub use ideal::IdealMachine;
 pub use machine::Machine900;
 pub use notice::Notice900;
-pub use operator::{Job900, Operator900};
+pub use operator::{Job900, Operator900, reference_drives};
 pub use programs::Programs900;
 pub use stage::{Action900, Expectation900, Script900, Stage900};
 pub use state::State900;
@@ -340,6 +340,7 @@ impl HostFamily for Control900 {
         let Command900 { by, name, value, .. } = *command;
         let written = match by {
             By::Operator => host.now.control.write_operator(name, value),
+            By::Panel => host.now.control.write_panel(name, value),
             By::Plc => host.now.control.write_plc(name, value),
         };
         match written {

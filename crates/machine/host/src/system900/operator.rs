@@ -126,7 +126,7 @@ impl Operator900 {
             let seeks = self.channels.get(k).is_some_and(|done| done.seeks);
             if !seeks && is(control, channel, ChannelParameter::AxesEnabled, 1) {
                 self.note(channel, |done| done.seeks = true);
-                self.next = seek(control, channel);
+                self.next = reference_drives(control, channel);
                 if let Some(first) = self.next.pop() {
                     return Some(Some(first));
                 }
@@ -186,8 +186,8 @@ fn write(control: &Control900, channel: u8, parameter: ChannelParameter, number:
     Some(Command900::by_operator(control.memory().name_of(place), number))
 }
 
-/// Drives to the reference points of the axes of a channel that have not passed theirs; the last one first.
-fn seek(control: &Control900, channel: u8) -> Vec<Command900> {
+/// What drives the axes of a channel to their reference points that have not passed theirs; the last one first.
+pub fn reference_drives(control: &Control900, channel: u8) -> Vec<Command900> {
     let memory = control.memory();
     let open = |physical: &u8| {
         let state = memory.of_axis(*physical, AxisParameter::ReferenceState).bits();

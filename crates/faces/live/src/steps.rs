@@ -2,7 +2,7 @@
 //!
 //! Decision: Contour cycles that somebody asks for while time stands pass in real time, 10,000 wait at most, and what
 //! is given meanwhile is done between them; pausing or going on breaks them off; EMERGENCY STOP goes before all other
-//! inputs and breaks off what takes long (also `panel/src/live.rs`)
+//! inputs and breaks off what takes long (also `live/src/live.rs`)
 
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct Stepped {
 
 /// The cycles that are asked for. They are counted since the station began.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Steps {
+pub struct Steps {
     taken: u64,
     until: u64,
     /// How often they were broken off, at which count, and why.
@@ -44,7 +44,7 @@ pub(crate) struct Steps {
 
 /// Some of them: those of one who waits for them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ticket {
+pub struct Ticket {
     from: u64,
     to: u64,
     cut: bool,

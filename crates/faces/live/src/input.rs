@@ -5,7 +5,7 @@ use bahn_machine::{Button, KeyAction};
 use bahn_path::Switch;
 use serde::{Deserialize, Serialize};
 
-use crate::transfer::TransferNews;
+use crate::news::TransferNews;
 
 /// Name of the EMERGENCY STOP button among the keys of the machine operating panel.
 pub const EMERGENCY_STOP: &str = "EMERGENCY_STOP";

@@ -1,0 +1,83 @@
+//! `bahn panel` on a machine with a System 900.
+
+use std::path::Path;
+
+use bahn_host::{Machine900, PowerOn900};
+use bahn_live::{Input, Live};
+use bahn_panel900::{Service900, Station900};
+use bahn_server::{Server, ServerOptions};
+
+use super::{PanelOptions, in_use, in_words, terminal, until_ctrl_c};
+use crate::interrupt::Interrupt;
+use crate::{Outcome, UsageError, diagnostics};
+
+/// Switches the machine on and shows its panel until Ctrl-C.
+pub(super) fn command(
+    options: &PanelOptions,
+    folder: &Path,
+    served: Option<ServerOptions>,
+) -> Result<Outcome, UsageError> {
+    if let Some(option) = of_a_tnc(options) {
+        return Err(UsageError::new(format!(
+            "{option} is for a TNC, and {} has a System 900",
+            folder.display()
+        )));
+    }
+    let machine = match Machine900::load(folder)? {
+        Ok(machine) => machine,
+        Err(faults) => {
+            diagnostics::print_faults(&faults);
+            return Ok(Outcome::ProgramError);
+        }
+    };
+    let power_on = PowerOn900::kept(&machine).map_err(in_use)?;
+    let name = machine.folder.name.clone();
+    let mut station = Station900::with(machine, power_on);
+    station.take(&Input::Speed(options.speed)).map_err(in_words)?;
+    let interrupt = Interrupt::on_ctrl_c();
+    let live = Live::start(station);
+    let shown = serve(&live, &name, options, served, &interrupt);
+    // Whatever became of the page, what was done is kept.
+    live.end().map_err(UsageError::new)?;
+    shown.map(|()| Outcome::Fine)
+}
+
+/// The page, and the terminal, until the operator leaves.
+fn serve(
+    live: &Live<Station900>,
+    name: &str,
+    options: &PanelOptions,
+    served: Option<ServerOptions>,
+    interrupt: &Interrupt,
+) -> Result<(), UsageError> {
+    let service = Service900::of(live).map_err(in_words)?;
+    let server = served.map(|served| Server::start(service.clone(), served));
+    let server = server.transpose().map_err(in_words)?;
+    if let Some(server) = &server {
+        options.say_page(name, server);
+    }
+    let shown = match options.in_the_terminal() {
+        true => terminal::show(service, || interrupt.is_requested() || live.has_ended()),
+        false => {
+            until_ctrl_c(interrupt);
+            Ok(())
+        }
+    };
+    if let Some(server) = server {
+        server.end();
+    }
+    shown
+}
+
+/// An option that means something to a TNC alone.
+fn of_a_tnc(options: &PanelOptions) -> Option<&'static str> {
+    let all = [
+        ("--rs232", options.rs232.is_some()),
+        ("--rs422", options.rs422.is_some()),
+        ("--print", options.print.is_some()),
+        ("--record", options.record.is_some()),
+        ("--replay", options.replay.is_some()),
+    ];
+    let given = all.into_iter().find(|(_, given)| *given);
+    given.map(|(option, _)| option)
+}
