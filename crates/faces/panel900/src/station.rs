@@ -60,7 +60,7 @@ impl Station900 {
 
     /// The same with what the control finds.
     pub fn with(machine: Machine900, power_on: PowerOn900) -> Station900 {
-        let plant = machine.plant();
+        let plant = machine.plant(&power_on.memory);
         let host = host(power_on, plant);
         Station900 {
             machine,
@@ -294,7 +294,10 @@ impl Station900 {
                         ..PowerOn900::fresh(&self.machine)
                     },
                 };
-                let plant = rest.plant.take().unwrap_or_else(|| self.machine.plant());
+                let plant = rest
+                    .plant
+                    .take()
+                    .unwrap_or_else(|| self.machine.plant(&power_on.memory));
                 let mut host = host(power_on, plant);
                 if let Some(urgent) = &self.urgent {
                     host.pace_outside();

@@ -151,8 +151,8 @@ pub use retained::Retained;
 pub use saved::{Course, Saved, Timeline};
 pub use script::{Line, Script, ScriptAction, Stage};
 pub use system900::{
-    Action900, By, Command900, Expectation900, Host900, IdealMachine, Job900, Machine900, Notice900,
-    Operator900, PowerOn900, Programs900, Script900, Stage900, State900, reference_drives,
+    Action900, By, Command900, Expectation900, Flash900, Host900, IdealMachine, Job900, Machine900,
+    Notice900, Operator900, PowerOn900, Programs900, Script900, Stage900, State900, reference_drives,
 };
 pub use table_edit::{LineChange, delete_line, set_line, with_column};
 pub use table_kind::{Content as CellContent, KnownColumn, PlainTable, TableForm};

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use bahn_control900::Control900;
 use bahn_host::{
     AnyPlant, Clock, Host, Host900, Job900, LogFile, Machine900, Operator900, Play, PowerOn900, Script900,
     Stage900, is_whole,
@@ -181,7 +180,7 @@ fn finish(
 ) -> Result<Outcome, UsageError> {
     let mut written = session.finish_files().map_err(UsageError::from);
     if let Some(path) = &options.run.sample {
-        written = written.and(write_sample(path, session.host.control()));
+        written = written.and(write_sample(path, &session.host));
     }
     diagnostics::print_faults(&session.play.failures());
     let report = RunReport900::of(&mut session, ended, &machine.folder.name, &options.read);
@@ -215,7 +214,8 @@ fn finish(
 }
 
 /// The event buffer as the control puts it out. It has no calendar: no date is said.
-fn write_sample(path: &Path, control: &Control900) -> Result<(), UsageError> {
+fn write_sample(path: &Path, host: &Host900) -> Result<(), UsageError> {
+    let control = host.control();
     let text = control.events().output("-", control.now_us() / 1000);
     files::write_whole(path, text.as_bytes())?;
     Ok(())

@@ -18,6 +18,7 @@ mod state;
 mod window;
 
 pub use command::{By, Command900};
+pub use flash::Flash900;
 pub use ideal::IdealMachine;
 pub use machine::Machine900;
 pub use notice::Notice900;
@@ -33,7 +34,6 @@ use bahn_control900::{Control900, Setup};
 use bahn_reader::Warning;
 use bahn_system900::{ChannelParameter, Memory, SpaceError, Value};
 
-use self::flash::Flash900;
 use self::notice::Before900;
 use crate::action::Answer;
 use crate::any_plant::AnyPlant;
@@ -57,7 +57,7 @@ pub struct PowerOn900 {
     /// Where it keeps what changes; `None` keeps nothing.
     pub state: Option<State900>,
     /// Its FLASH.
-    flash: Flash900,
+    pub flash: Flash900,
 }
 
 /// What a System 900 has beside its control.

@@ -124,5 +124,6 @@ fn host(machine: &Machine900, program: &str) -> Result<Host900, HostError> {
     }
     let job = Job900 { single_block: false };
     let operator = Operator900::new(Attendance::Full, job);
-    Ok(Host::of_system900(power_on, machine.plant(), operator))
+    let plant = machine.plant(&power_on.memory);
+    Ok(Host::of_system900(power_on, plant, operator))
 }

@@ -14,7 +14,7 @@ const FAILURES: [&str; 4] = ["jammed", "no-feedback", "permanent", "slow"];
 pub(super) fn catalogue(machine: &Machine900) -> Catalogue {
     let mut found = Finder {
         memory: machine.parameters.memory(),
-        plant: machine.plant(),
+        plant: machine.plant(machine.parameters.memory()),
         mishaps: Vec::new(),
         repairs: vec!["repair all".to_owned()],
     };
