@@ -128,6 +128,8 @@ pub(crate) struct Channel {
     pub slope_mm_min: f64,
     /// The block that is shown, and its number.
     pub shown: Option<(BlockRef, u32)>,
+    /// The place in the order of execution of the block whose G functions are shown.
+    pub shown_sequence: Option<u64>,
     /// Override of the path, %.
     pub override_percent: f64,
     /// P8817: the feed of the block of this place in the order of execution, mm/min.
@@ -175,6 +177,7 @@ impl Channel {
             loops_enabled: false,
             slope_mm_min: f64::INFINITY,
             shown: None,
+            shown_sequence: None,
             override_percent: 100.0,
             block_feed: None,
             faulty: None,

@@ -23,6 +23,8 @@ pub struct Language {
     /// A program goes back before the block of a place in the order of execution, and on at a block of the same program, from
     /// where the axes stand.
     pub branch: fn(&mut dyn Reader, u64, u32, &Position),
+    /// Shows what is in force in the block of a place in the order of execution.
+    pub show: fn(&dyn Reader, u64, &mut Memory),
     /// The number of a block as programs write it.
     pub number: fn(&dyn Reader, BlockRef) -> u32,
 }
@@ -45,6 +47,11 @@ pub fn language() -> Language {
         branch: |reader, sequence, target, position| match Reader900::of_mut(reader) {
             Some(reader) => reader.branch(sequence, target, position),
             None => reader.goto(target),
+        },
+        show: |reader, sequence, memory| {
+            if let Some(reader) = Reader900::of(reader) {
+                reader.show_executed(sequence, memory);
+            }
         },
         number: |reader, block| Reader900::of(reader).map_or(block.block, |reader| reader.number_of(block)),
     }

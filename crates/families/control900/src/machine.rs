@@ -259,7 +259,7 @@ impl Machine {
         };
         (channel.branch, channel.residual, channel.jump) = (None, None, None);
         channel.waits_for_m = false;
-        channel.faulty = None;
+        (channel.faulty, channel.shown_sequence) = (None, None);
         let Some(program) = channel.starting() else {
             return;
         };

@@ -43,6 +43,23 @@ pub(crate) fn show(machine: &mut Machine) {
     }
     for k in 0..machine.channels.len() {
         show_channel(machine, k);
+        show_block(machine, k);
+    }
+}
+
+/// Shows what is in force in the block that a channel executes, when it is another one.
+fn show_block(machine: &mut Machine, k: usize) {
+    let language = machine.language;
+    let Some(channel) = machine.channels.get_mut(k) else {
+        return;
+    };
+    let executed = channel.run.element().map(|element| element.sequence);
+    if executed.is_none() || executed == channel.shown_sequence {
+        return;
+    }
+    channel.shown_sequence = executed;
+    if let (Some(sequence), Some(language), Some(feeder)) = (executed, language, &channel.feeder) {
+        (language.show)(feeder.reader(), sequence, &mut machine.memory);
     }
 }
 
@@ -94,6 +111,7 @@ fn show_channel(machine: &mut Machine, k: usize) {
         return;
     };
     let (number, memory) = (channel.number, &mut machine.memory);
+    memory.show_tool(number);
     memory.set_channel(number, ChannelParameter::AllReferenced, i64::from(referenced));
     let mut speed = channel.run.track.speed_mm_s() * 60.0;
     if state == 0 {

@@ -319,6 +319,7 @@ impl Reader900 {
         match frame.loops.get_mut(at) {
             Some((_, left)) if *left > 0 => {
                 *left -= 1;
+                self.run.modal.loops = Some([count, *left]);
                 self.go_to(target)
             }
             _ => {

@@ -63,7 +63,7 @@ pub(crate) fn take(
                     _ => Side::Off,
                 }
             }
-            14 | 15 | 47 | 147 | 171 => {}
+            14 | 15 | 171 => {}
             96 | 97 => {
                 modal.cuts = *number == 96;
                 once.speed_kind = Some(*number);
@@ -82,7 +82,8 @@ pub(crate) fn take(
             60 => modal.mirrored = [false; 2],
             61 => modal.mirrored[0] = true,
             62 => modal.mirrored[1] = true,
-            63 | 64 => modal.override_off = *number == 63,
+            63 | 64 => (modal.override_off, modal.full_feed) = (*number == 63, *number),
+            47 | 147 => modal.coordinates = *number,
             69 | 71..=75 => once.cycle = Some(*number),
             80 => modal.drilling = None,
             81 | 83..=85 => {

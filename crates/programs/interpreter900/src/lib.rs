@@ -44,6 +44,8 @@ mod plain;
 mod reader;
 mod refusal;
 mod run;
+mod showing;
+mod shown;
 mod speeds;
 mod turning;
 mod words;

@@ -61,6 +61,12 @@ pub(crate) struct Modal {
     pub polar: [f64; 2],
     /// G63
     pub override_off: bool,
+    /// G63, G64; 60 before the first one [002:5129-5131].
+    pub full_feed: u16,
+    /// G47, G147
+    pub coordinates: u16,
+    /// M24: how often it jumps, and how often still.
+    pub loops: Option<[u32; 2]>,
     /// G81 to G85 that is modal.
     pub drilling: Option<u16>,
     pub feeds: Feeds,
@@ -111,6 +117,9 @@ impl Modal {
             is_polar: false,
             polar: [0.0; 2],
             override_off: false,
+            full_feed: 60,
+            coordinates: 147,
+            loops: None,
             drilling: None,
             feeds: Feeds::default(),
             side: Side::Off,

@@ -23,6 +23,7 @@ use crate::file::FilesOfRun;
 use crate::item::Item;
 use crate::refusal::Refusal;
 use crate::run::{Ended, Frame, Run};
+use crate::shown::Shown;
 use crate::writes::Journal;
 
 /// Executes a program of a channel and the cycles that it calls.
@@ -38,6 +39,9 @@ pub struct Reader900 {
     /// The block that is executed: its room is used again.
     pub(crate) block: Block,
     pub(crate) run: Run,
+    pub(crate) shown: Shown,
+    /// The block that the look-ahead has shown.
+    pub(crate) shown_read: u64,
     /// States before blocks whose elements were handed out, when they are kept, with the length of the journal.
     kept: Option<VecDeque<(Mark, Run, usize)>>,
     pub(crate) journal: Journal,
@@ -77,6 +81,8 @@ impl Reader900 {
             files: FilesOfRun::new(program, beside),
             block: Block::default(),
             run: Run::at(position),
+            shown: Shown::default(),
+            shown_read: 0,
             kept: None,
             journal: Journal::new(),
             work: None,
@@ -101,6 +107,7 @@ impl Reader900 {
 
     /// Takes the parameters back; `None` when it has none.
     pub fn take_memory(&mut self) -> Option<Box<Memory>> {
+        self.show_read();
         self.memory.take()
     }
 
@@ -174,6 +181,9 @@ impl Reader900 {
         let written = self.journal.len();
         match (self.execute(), before) {
             (Ok(()), Some(before)) => {
+                if !self.run.queue.is_empty() || self.run.contour.holds() {
+                    self.note_block();
+                }
                 if (!self.run.queue.is_empty() || self.run.contour.holds())
                     && let Some(kept) = &mut self.kept
                 {
@@ -312,6 +322,7 @@ impl Reader for Reader900 {
         while kept.get(1).is_some_and(|(next, ..)| next.sequence <= sequence) {
             kept.pop_front();
         }
+        self.shown.forget_before(sequence);
         let first = kept.front().map_or(0, |(_, _, written)| *written);
         if first > 0 {
             self.journal.drain(..first.min(self.journal.len()));
@@ -329,6 +340,7 @@ impl Reader for Reader900 {
         if let Some((_, state, written)) = state {
             self.run = state;
             self.run.is_stale = true;
+            self.shown.go_back(self.run.sequence);
             self.unwrite(written);
         }
         self.journal.clear();

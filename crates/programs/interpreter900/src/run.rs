@@ -34,6 +34,8 @@ pub(crate) struct Frame {
     pub block: u32,
     /// Loops of M24: the line of each, and how often it jumps still.
     pub loops: Vec<(u32, u32)>,
+    /// The block that has called the cycle after it.
+    pub called_at: u32,
 }
 
 /// The state of a run.
@@ -102,6 +104,9 @@ impl Run {
     pub fn call(&mut self, file: usize) -> Result<(), Refusal> {
         if self.frames.len() > DEPTH_MAX {
             return wrong(format!("more than {DEPTH_MAX} cycles within one another"));
+        }
+        if let Some(caller) = self.frames.last_mut() {
+            caller.called_at = self.at.block;
         }
         self.frames.push(Frame::new(file));
         Ok(())
@@ -205,6 +210,7 @@ impl Frame {
             line: 1,
             block: 1,
             loops: Vec::new(),
+            called_at: 0,
         }
     }
 }

@@ -79,3 +79,83 @@ fn p8715_ends_the_way_of_m26() {
     assert_eq!(rig.read("P12151"), 60.0);
     assert_eq!(rig.read("P8695"), 20.0, "the earlier one");
 }
+
+/// What is in force is shown with the block that is executed, not with the one that is read: the circle of N30, its plane, its
+/// exact stop; the words of N20 are gone then [002:4845-5024].
+#[test]
+fn g_functions_are_shown_as_they_are_executed() {
+    let mut rig = Rig::on(
+        &(axis(5)
+            + "q112: $0305005A\nq104: 30000\nq105: 1000\nq3: 40000\nq170: 20000\nq171: 1\nq172: 2\nq173: 3\nq174: 0\n"),
+    );
+    rig.start_text(
+        "N10 G1 X10 F3000\nN20 G2 X30 I10 J0 G28 G44 G63 G93 F2\nN30 G45 G55 G61 G62 G5 G10 G94 F3000\nN35 G92 Y2\n\
+         N40 G1 G18 G91 G47 Z40\nN50 G4 F1.5\nN60 M24.50.2\nN70 G41 G17\nN80 G1 X-5\nN90 X-5\nN95 G40 X-1\nN99 M30\n",
+    );
+    let mode = [
+        "P8950", "P8951", "P8952", "P8953", "P8958", "P8964", "P8965", "P8966", "P8967", "P8969", "P8970",
+        "P8971", "P8972", "P8978", "P8979", "P8980", "P8943", "P8945", "P8947", "P8948",
+    ];
+    let shown = |rig: &Rig| mode.map(|name| rig.read(name) as i64);
+    rig.until(|rig| rig.read("P8901") == 10.0);
+    assert_eq!(
+        shown(&rig),
+        [
+            17, 1, 2, 3, 29, 40, 43, 46, 147, 53, 60, 60, 60, 90, 0, 94, 7, 11, 14, 15
+        ]
+    );
+    assert!(rig.read("P8918").is_nan() && rig.read("P8941").is_nan());
+    rig.until(|rig| rig.read("P8901") == 20.0);
+    assert_eq!([rig.read("P8918"), rig.read("P8919")], [10.0, 0.0]);
+    assert!(rig.read("P8920").is_nan() && rig.read("P8921").is_nan());
+    assert_eq!(
+        shown(&rig),
+        [
+            17, 1, 2, 3, 28, 40, 44, 46, 147, 53, 60, 60, 63, 90, 0, 93, 7, 11, 14, 15
+        ]
+    );
+    rig.until(|rig| rig.read("P8901") == 40.0);
+    assert!(rig.read("P8918").is_nan());
+    assert_eq!(
+        shown(&rig),
+        [
+            18, 3, 1, 2, 28, 40, 44, 45, 47, 55, 61, 62, 63, 91, 92, 94, 5, 10, 14, 15
+        ]
+    );
+    assert_eq!([rig.read("P9100"), rig.read("P9101")], [0.0, 2.0]);
+    rig.until(|rig| rig.read("P8901") == 50.0);
+    assert_eq!(rig.read("P8941"), 1.5);
+    rig.until(|rig| rig.read("P8934") == 2.0);
+    assert_eq!(rig.read("P8935"), 1.0);
+    rig.until(|rig| rig.read("P8964") == 41.0);
+    assert_eq!(rig.read("P8901"), 80.0);
+    rig.until_end(1);
+    assert_eq!(rig.control.messages(), []);
+}
+
+/// In a cycle: its number and block, its level, and from where it was called.
+#[test]
+fn the_cycle_that_is_executed_is_shown() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11069: $00004000\n"));
+    let beside: MemoryFiles = [("Z77.900", "N5 X2\nN6 G2 X6 R2\n")].into_iter().collect();
+    let text = b"N10 G1 X1 F300 M77\nN20 G1 X9\nN30 M30\n";
+    let program = Reader900::new("P1000.900", text, 1, Position::ZERO, Arc::new(beside));
+    rig.load_text("");
+    rig.control.set_program(1, Some(Box::new(program)));
+    rig.operator("P8683", "2");
+    rig.seconds(0.05);
+    rig.operator("P8682", "2");
+    let names = ["P8904", "P8905", "P8912", "P8913", "P8914"];
+    rig.until(|rig| rig.read("P8904") == 77.0);
+    assert_eq!(names.map(|name| rig.read(name)), [77.0, 5.0, 1.0, 1000.0, 10.0]);
+    rig.until(|rig| rig.read("P8905") == 6.0);
+    assert_eq!(rig.read("P8921"), 2.0);
+    rig.until(|rig| rig.read("P8901") == 20.0);
+    assert_eq!(rig.read("P8912"), 0.0);
+    assert!(
+        ["P8904", "P8905", "P8913", "P8914"]
+            .iter()
+            .all(|name| rig.read(name).is_nan())
+    );
+    rig.until_end(1);
+}

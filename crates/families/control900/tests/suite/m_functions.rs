@@ -166,13 +166,16 @@ fn a_write_on_the_path_is_done_there() {
 #[test]
 fn the_standard_answer_changes_the_tool() {
     let tools = "q104: 30000\nq105: 1000\nq3: 40000\nq175: 20000\nq176: 4\nq178: 20\n\
-        P20040: 3\nP20041: 1\nP8100: 3\nP8101: 1\nP8110: 5.5\nP8200: 2\nP8210: 8\nP8040: 1\n";
+        P20040: 3\nP20041: 1\nP8100: 3\nP8101: 1\nP8110: 5.5\nP8200: 2\nP8203: 1\nP8210: 8\nP8211: 50.25\nP8212: 0.5\nP8213: -1\nP8214: 9\nP8040: 1\n";
     let mut rig = Rig::on(&format!("{EXAMPLE}{tools}"));
     rig.start(1, &with(6, At::Start, Synchronisation::MvsSvs));
     rig.until_end(1);
     // The radius of the old one is in its record, that of the new one in the spindle; T is read again.
     let after = ["P20050", "P8100", "P8110", "P8040"].map(|name| rig.read(name));
     assert_eq!(after, [5.5, 2.0, 8.0, 0.0]);
+    // That of the block is shown [002:4989-4996].
+    let shown = ["P9080", "P9083", "P9090", "P9091", "P9092", "P9093", "P9094"].map(|name| rig.read(name));
+    assert_eq!(shown, [2.0, 1.0, 8.0, 50.25, 0.5, -1.0, 9.0]);
 }
 
 /// P8690 sends an M function by hand: in HAND alone [002:3714-3715].

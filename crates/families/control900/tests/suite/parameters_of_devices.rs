@@ -136,38 +136,45 @@ fn spindles_are_all_alike() {
 #[test]
 fn cutting_speeds_turn_by_their_diameter() {
     let pi = std::f64::consts::PI;
-    let set = "q2801: 2\nq2804: 360000\nq1640: 5\nq1642: 200\nq1643: 1000\nq1647: 96\nq1648: 100\nq1650: 1\n";
-    let mut rig = Rig::on(&(axis(5) + set));
-    let turns = |rig: &mut Rig| {
-        rig.seconds(1.0);
-        (rig.read("q2970") / 360.0, rig.read("P11649"))
-    };
-    let near = |found: (f64, f64), wanted: (f64, f64)| {
-        let is_near = |found: f64, wanted: f64| (found - wanted).abs() < wanted * 3e-3;
-        assert!(
-            is_near(found.0, wanted.0) && is_near(found.1, wanted.1),
-            "{found:?} {wanted:?}"
-        );
-    };
-    near(turns(&mut rig), (100_000.0 / (200.0 * pi), 100.0));
-    rig.plc("P11644", "80000");
-    near(turns(&mut rig), (80_000.0 / (200.0 * pi), 80.0));
-    // P11645 is of G97 alone.
-    rig.plc("P11645", "10");
-    near(turns(&mut rig), (80_000.0 / (200.0 * pi), 80.0));
-    rig.plc("P11643", "0");
-    rig.plc("P11648", "30000");
-    rig.plc("P11641", "1");
-    // In the middle as fast as the axis can: 1000 rpm.
-    assert!((turns(&mut rig).0 - 1000.0).abs() < 1.0);
-    rig.start(1, &[Line::to(&[(Axis::X, 50.0)], 3000.0)]);
-    rig.until_end(1);
-    near(turns(&mut rig), (30_000.0 / (100.0 * pi), 30_000.0));
-    rig.plc("P11647", "97");
-    rig.plc("P11645", "40");
-    rig.plc("P11646", "1");
-    rig.plc("P11648", "7200");
-    near(turns(&mut rig), (20.0, 7200.0));
-    rig.plc("P11648", "36000");
-    near(turns(&mut rig), (40.0, 14_400.0));
+    for spindle in 0..8 {
+        let of = |offset: u32| format!("q{}", 1640 + 20 * spindle + offset);
+        let set = [(0, 5), (2, 200), (3, 1000), (7, 96), (8, 100), (10, 1)];
+        let set: String = set
+            .iter()
+            .map(|(offset, value)| format!("{}: {value}\n", of(*offset)))
+            .collect();
+        let mut rig = Rig::on(&(axis(5) + "q2801: 2\nq2804: 360000\n" + &set));
+        let turns = |rig: &mut Rig| {
+            rig.seconds(1.0);
+            (rig.read("q2970") / 360.0, rig.read(&of(9)))
+        };
+        let near = |found: (f64, f64), wanted: (f64, f64)| {
+            let is_near = |found: f64, wanted: f64| (found - wanted).abs() < wanted * 3e-3;
+            assert!(
+                is_near(found.0, wanted.0) && is_near(found.1, wanted.1),
+                "{found:?} {wanted:?}"
+            );
+        };
+        near(turns(&mut rig), (100_000.0 / (200.0 * pi), 100.0));
+        rig.plc(&of(4), "80000");
+        near(turns(&mut rig), (80_000.0 / (200.0 * pi), 80.0));
+        // P11645 is of G97 alone.
+        rig.plc(&of(5), "10");
+        near(turns(&mut rig), (80_000.0 / (200.0 * pi), 80.0));
+        rig.plc(&of(3), "0");
+        rig.plc(&of(8), "30000");
+        rig.plc(&of(1), "1");
+        // In the middle as fast as the axis can: 1000 rpm.
+        assert!((turns(&mut rig).0 - 1000.0).abs() < 1.0);
+        rig.start(1, &[Line::to(&[(Axis::X, 50.0)], 3000.0)]);
+        rig.until_end(1);
+        near(turns(&mut rig), (30_000.0 / (100.0 * pi), 30_000.0));
+        rig.plc(&of(7), "97");
+        rig.plc(&of(5), "40");
+        rig.plc(&of(6), "1");
+        rig.plc(&of(8), "7200");
+        near(turns(&mut rig), (20.0, 7200.0));
+        rig.plc(&of(8), "36000");
+        near(turns(&mut rig), (40.0, 14_400.0));
+    }
 }

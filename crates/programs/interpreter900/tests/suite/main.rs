@@ -13,5 +13,6 @@ mod going_back;
 mod parameters;
 mod path;
 mod random;
+mod shown;
 mod support;
 mod zero_points;
