@@ -72,10 +72,15 @@ pub(crate) fn character(name: &str) -> Option<&'static str> {
     })
 }
 
+/// A direction key that is tapped is down so long, µs, as on every machine's panel (docs/scripts.md).
+const TAP_US: u64 = 200_000;
+
 /// What is held, and what it has changed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Held {
     names: Vec<String>,
+    /// Direction keys that were tapped, and when they come up, µs.
+    taps: Vec<(String, u64)>,
     /// The feed by hand before RAPID, as it is written, and its parameter.
     feed: Option<(Name, String)>,
 }
@@ -100,10 +105,13 @@ impl Held {
             if is_down {
                 move_axis(axis, plus, desk)?;
             }
-            // A key that is let go stops; a tap moves as long as a cycle does.
-            return match !is_down || (taps && !steps(&desk.sight())) {
-                true => desk.press(ChannelParameter::ManualMove, "0"),
-                false => Ok(()),
+            if taps {
+                let until = desk.host.control().now_us() + TAP_US;
+                self.taps.push((name.to_owned(), until));
+            }
+            return match is_down {
+                true => Ok(()),
+                false => desk.press(ChannelParameter::ManualMove, "0"),
             };
         }
         match name {
@@ -124,9 +132,29 @@ impl Held {
         }
     }
 
+    /// Keys that were tapped are to come up.
+    pub fn is_tapped(&self) -> bool {
+        !self.taps.is_empty()
+    }
+
+    /// Time goes on: keys that were tapped come up.
+    pub fn tick(&mut self, desk: &mut Desk<'_>) {
+        let now = desk.host.control().now_us();
+        let (due, later) = std::mem::take(&mut self.taps)
+            .into_iter()
+            .partition(|(_, until)| *until <= now);
+        self.taps = later;
+        let due: Vec<(String, u64)> = due;
+        for (name, _) in due {
+            // Who has locked the parameter meanwhile stops the axis himself.
+            let _ = self.key(&name, KeyAction::Release, desk);
+        }
+    }
+
     /// What is held is let go.
     pub fn release_all(&mut self, desk: &mut Desk<'_>) {
-        for name in std::mem::take(&mut self.names) {
+        let tapped = std::mem::take(&mut self.taps).into_iter().map(|(name, _)| name);
+        for name in std::mem::take(&mut self.names).into_iter().chain(tapped) {
             // What cannot be let go any more is not held either.
             let _ = self.key(&name, KeyAction::Release, desk);
         }

@@ -158,6 +158,14 @@ impl Station900 {
         self.passing.steps.pass();
         let cycled = host.step();
         host.drop_path();
+        if self.held.is_tapped() {
+            self.held.tick(&mut Desk {
+                machine: &self.machine,
+                host,
+                channel: self.console.channel,
+                language: Language::default(),
+            });
+        }
         cycled
     }
 

@@ -12,6 +12,22 @@ use crate::sight::{Desk, Sight};
 /// Where in a record the columns lie: group, number, place, life, radius, length, their offsets, quadrant.
 const OFFSETS: [u32; 9] = [0, 1, 2, 8, 10, 11, 12, 13, 14];
 
+/// What the columns are called, and how wide they are; the first one numbers the records.
+fn heads(sight: &Sight<'_>) -> [(&'static str, usize); 10] {
+    [
+        ("", 3),
+        (sight.words("T"), 5),
+        (sight.words("NUMBER"), 6),
+        (sight.words("PLACE"), 5),
+        (sight.words("LIFE"), 5),
+        (sight.words("RADIUS"), 9),
+        (sight.words("LENGTH"), 9),
+        ("DR", 7),
+        ("DL", 7),
+        (sight.words("QUADR"), 5),
+    ]
+}
+
 /// The cursor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ToolsPage {
@@ -32,18 +48,7 @@ impl ToolsPage {
 impl Page for ToolsPage {
     fn window(&self, sight: &Sight<'_>) -> Window {
         let tools = Tools::of(sight.memory(), sight.channel);
-        let heads = [
-            ("", 3),
-            (sight.words("T"), 5),
-            (sight.words("NUMBER"), 6),
-            (sight.words("PLACE"), 5),
-            (sight.words("LIFE"), 5),
-            (sight.words("RADIUS"), 9),
-            (sight.words("LENGTH"), 9),
-            ("DR", 7),
-            ("DL", 7),
-            (sight.words("QUADR"), 5),
-        ];
+        let heads = heads(sight);
         let rows = tools.records.iter().map(|tool| {
             let cells = OFFSETS.map(|offset| {
                 let cell = sight.memory().cell(Name::P(sight.channel, tool.p + offset));
@@ -63,8 +68,10 @@ impl Page for ToolsPage {
     fn prompt(&self, sight: &Sight<'_>) -> String {
         match self.name(sight) {
             Some((record, name)) => {
-                let row = bahn_system900::row(name).map_or("", |row| row.title);
-                format!("{} {record}, {name} {row} =", sight.words("RECORD"))
+                let column = heads(sight)
+                    .get(self.cursor.column + 1)
+                    .map_or("", |(head, _)| head);
+                format!("{} {record}, {column} {name} =", sight.words("RECORD"))
             }
             None => sight.words("THE CHANNEL HAS NO TOOLS").to_owned(),
         }

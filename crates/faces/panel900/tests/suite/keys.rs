@@ -35,6 +35,34 @@ fn a_direction_key_moves_its_axis_as_long_as_it_is_held() {
 }
 
 #[test]
+fn a_key_that_is_tapped_is_down_a_moment() {
+    let mut panel = Panel::of_the_portal();
+    let before = panel.number("P12151").unwrap();
+    panel.keys("X+");
+    panel.run(0.1);
+    assert_eq!(panel.number("P8752"), Some(1.0));
+    panel.run(1.0);
+    assert_eq!(panel.number("P8752"), Some(0.0));
+    assert!(panel.number("P12151").unwrap() > before);
+}
+
+#[test]
+fn keys_are_down_as_long_as_they_are_held() {
+    let mut panel = Panel::of_the_portal();
+    for (key, parameter, down) in [
+        ("HAND", "P8681", 1.0),
+        ("START", "P8682", 2.0),
+        ("STOP", "P8682", 1.0),
+    ] {
+        panel.hold(key, KeyAction::Press).unwrap();
+        panel.run(0.1);
+        assert_eq!(panel.number(parameter), Some(down), "{key}");
+        panel.hold(key, KeyAction::Release).unwrap();
+        assert_eq!(panel.number(parameter), Some(0.0), "{key}");
+    }
+}
+
+#[test]
 fn rapid_takes_the_greatest_feed_by_hand() {
     let mut panel = Panel::of_the_portal();
     let [feed, most] = ["P8755", "P8754"].map(|name| panel.number(name));
@@ -72,11 +100,13 @@ fn reference_drives_the_axes_that_have_not_passed_theirs() {
     assert!(
         screen.lamps["REFERENCE"] && !screen.status.axes[0].referenced && screen.status.axes[1].referenced
     );
+    // Of the three axes X alone is driven, in the direction plus, and its zero pulse counts [002:8018-8042].
+    let [x, y] = ["P12151", "P12351"].map(|name| panel.number(name).unwrap());
     panel.keys("REFERENCE");
-    panel.until(120.0, |panel| {
-        panel.number("P8709") == Some(1.0) && panel.number("P12180") == Some(1.0)
-    });
-    assert!(!panel.screen().lamps["REFERENCE"]);
+    panel.run(1.0);
+    assert_eq!(panel.number("P12130"), Some(f64::from(0x0001_0001)));
+    assert_eq!(panel.number("P12330"), None);
+    assert!(panel.number("P12151").unwrap() > x && panel.number("P12351") == Some(y));
 }
 
 #[test]
