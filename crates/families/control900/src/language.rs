@@ -25,6 +25,8 @@ pub struct Language {
     pub branch: fn(&mut dyn Reader, u64, u32, &Position),
     /// Shows what is in force in the block of a place in the order of execution.
     pub show: fn(&dyn Reader, u64, &mut Memory),
+    /// A program starts at the block of this number, 0 for its first one.
+    pub start: fn(&mut dyn Reader, u32),
     /// The number of a block as programs write it.
     pub number: fn(&dyn Reader, BlockRef) -> u32,
 }
@@ -52,6 +54,11 @@ pub fn language() -> Language {
             if let Some(reader) = Reader900::of(reader) {
                 reader.show_executed(sequence, memory);
             }
+        },
+        start: |reader, number| match Reader900::of_mut(reader) {
+            Some(reader) => reader.start_at(number),
+            None if number > 0 => reader.goto(number),
+            None => {}
         },
         number: |reader, block| Reader900::of(reader).map_or(block.block, |reader| reader.number_of(block)),
     }

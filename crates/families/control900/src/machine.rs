@@ -268,10 +268,12 @@ impl Machine {
         feeder.set_tap(self.keeps_path);
         channel.feeder = Some(feeder);
         self.give_memory(k);
+        let language = self.language;
         if let Some((_, Some(feeder), _)) = self.parts(k) {
             feeder.reader_mut().relocate(&here);
-            if let Some(block) = u32::try_from(block).ok().filter(|block| *block > 0) {
-                feeder.reader_mut().goto(block);
+            let block = u32::try_from(block).unwrap_or(0);
+            if let Some(language) = language {
+                (language.start)(feeder.reader_mut(), block);
             }
         }
         self.take_memory(k);

@@ -104,14 +104,15 @@ impl Reader900 {
         self.run.has_begun = true;
         let data = memory.path_data(self.channel);
         self.run.modal.zero_point = data.first_zero_point();
-        let start = data.start_block();
+        let said = self.run.start.map(f64::from);
+        let start = said.or(data.start_block());
         let start = start.filter(|block| *block > 0.0 && !self.run.is_placed);
         self.run.modal.refresh(memory, self.channel, &self.axes)?;
         self.run.is_stale = false;
         if let Some(number) = start {
             let line = self.line_of(number as u32);
             let Some(line) = line else {
-                return wrong(format!("P8801: no block has the number N{number}"));
+                return wrong(format!("start block: no block has the number N{number}"));
             };
             self.go_to_line(line);
         }

@@ -139,6 +139,12 @@ impl Reader900 {
         self.jump(target);
     }
 
+    /// The program starts at a block of this number, 0 for its first one, whatever P8801 says: an emergency program has a
+    /// start block of its own [002:4303-4314].
+    pub fn start_at(&mut self, number: u32) {
+        self.run.start = Some(number);
+    }
+
     /// Goes on at a block of the file that is executed.
     fn jump(&mut self, block: u32) {
         if let Some(frame) = self.run.frames.last_mut()

@@ -70,6 +70,8 @@ pub(crate) struct Run {
     pub has_begun: bool,
     /// Somebody has said where it begins: P8801 does not.
     pub is_placed: bool,
+    /// The number of the block that it starts at, 0 for the first one, where a control says it: P8801 counts for others.
+    pub start: Option<u32>,
 }
 
 /// So many blocks in a row without a movement are no program.
@@ -97,6 +99,7 @@ impl Run {
             is_stale: true,
             has_begun: false,
             is_placed: false,
+            start: None,
         }
     }
 

@@ -159,3 +159,41 @@ fn the_cycle_that_is_executed_is_shown() {
     );
     rig.until_end(1);
 }
+
+/// P8801 is the N number of the block with which a program starts, P8821 that of emergency program 1 [002:4156-4158]
+/// [002:4303-4314]: the one says nothing of the other.
+#[test]
+fn start_blocks_are_numbers_of_blocks() {
+    let mut rig = Rig::on("P8801: 300\nP8821: 20\n");
+    let program = |name: &str, text: &[u8]| {
+        let beside = Arc::new(MemoryFiles::default());
+        Box::new(Reader900::new(name, text, 1, Position::ZERO, beside))
+    };
+    let text = b"N100 G1 X50 F3000\nN200 Y10\nN300 X60\nN400 M30\n";
+    rig.operator("P8800", "1000");
+    rig.control.set_program(1, Some(program("P1000.900", text)));
+    let away = b"N10 G1 Y50 F3000\nN20 Y5\nN300 Y70\n";
+    rig.control
+        .set_emergency_program(1, 1, Some(program("P9001.900", away)));
+    rig.operator("P8683", "2");
+    rig.seconds(0.05);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8685") == 2.0);
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (60.0, 0.0));
+    let passed = |rig: &mut Rig| {
+        let mut passed = Vec::new();
+        while rig.read("P8685") == 2.0 {
+            let block = rig.read("P8901");
+            if passed.last() != Some(&block) {
+                passed.push(block);
+            }
+            rig.cycle();
+        }
+        passed
+    };
+    rig.plc("P8710", "1");
+    rig.until(|rig| rig.read("P8685") == 2.0);
+    assert_eq!(passed(&mut rig), [20.0, 300.0]);
+    assert_eq!(rig.read("P12351"), 70.0);
+}

@@ -47,7 +47,7 @@ fn blocks_are_skipped_and_passed_over() {
     assert_eq!(ends("P8810: 1\n", program), [[1.0, 0.0, 0.0], [1.0, 0.0, 1.0]]);
     assert_eq!(ends("P8801: 30\n", program), [[0.0, 0.0, 1.0]]);
     let said = fault("P8801: 35\n", program);
-    assert_eq!(said, "P8801: no block has the number N35");
+    assert_eq!(said, "start block: no block has the number N35");
 }
 
 /// A parameter with status bit 1.2 is written when the path comes to its block; one with 1.3 lets the look-ahead wait.
