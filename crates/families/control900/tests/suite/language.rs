@@ -164,15 +164,15 @@ fn the_cycle_that_is_executed_is_shown() {
 /// [002:4303-4314]: the one says nothing of the other.
 #[test]
 fn start_blocks_are_numbers_of_blocks() {
-    let mut rig = Rig::on("P8801: 300\nP8821: 20\n");
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP8801: 300\nP8821: 20\n"));
     let program = |name: &str, text: &[u8]| {
         let beside = Arc::new(MemoryFiles::default());
         Box::new(Reader900::new(name, text, 1, Position::ZERO, beside))
     };
-    let text = b"N100 G1 X50 F3000\nN200 Y10\nN300 X60\nN400 M30\n";
+    let text = b"N100 G1 X50 F3000\nN200 Y10\nN300 G1 X60 F3000\nN400 M30\n";
     rig.operator("P8800", "1000");
     rig.control.set_program(1, Some(program("P1000.900", text)));
-    let away = b"N10 G1 Y50 F3000\nN20 Y5\nN300 Y70\n";
+    let away = b"N10 G0 Y50\nN20 G1 Y5 F3000\nN300 Y70\n";
     rig.control
         .set_emergency_program(1, 1, Some(program("P9001.900", away)));
     rig.operator("P8683", "2");
