@@ -12,7 +12,7 @@ use crate::machine::Machine;
 use crate::message::Message;
 use crate::setup::Setup;
 use crate::transfer::Transfer;
-use crate::{branch, command, monitor, status};
+use crate::{branch, command, monitor, preparing, status};
 
 /// A control. A clone goes on by itself, with the same bits.
 #[derive(Clone)]
@@ -85,7 +85,7 @@ impl Control900 {
         self.machine.written.reserve();
         for k in 0..self.machine.channels.len() {
             branch::jump(&mut self.machine, k);
-            self.machine.prepare(k);
+            preparing::prepare(&mut self.machine, k);
         }
     }
 

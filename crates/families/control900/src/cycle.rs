@@ -9,7 +9,7 @@ use bahn_system900::{ChannelParameter, Place};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, command, coupling, enable, hand, plc};
+use crate::{branch, command, coupling, enable, hand, plc, restart};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -90,6 +90,8 @@ impl Family for Machine {
 
     fn transfer(&mut self) {
         branch::follow_branches(self);
+        restart::note_place(self);
+        restart::follow(self);
     }
 
     fn end_cycle(&mut self, _: &Measured) {}
@@ -111,6 +113,7 @@ fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
             for parameter in [ChannelParameter::BrokenProgram, ChannelParameter::BrokenBlock] {
                 machine.memory.set_channel(number, parameter, 0);
             }
+            restart::forget(machine, k);
             machine.leave(k);
             if let Some((run, ..)) = machine.parts(k) {
                 run.end();

@@ -65,6 +65,8 @@ ChannelParameter {
     StartRequest = 8684,
     /// P8685: state of the program [002:3669-3680].
     ProgramState = 8685,
+    /// P8686: how far a restart is [002:3697-3705].
+    RestartInfo = 8686,
     /// P8690: an M function by hand.
     ManualM = 8690,
     /// P8695: block whose way was ended by M26.
@@ -123,6 +125,10 @@ ChannelParameter {
     AbortProgram = 8802,
     /// P8803: the block that was broken off.
     AbortBlock = 8803,
+    /// P8804: the next start is a restart at the contour [002:4165-4193].
+    Restart = 8804,
+    /// P8807: the place that was broken off in the order of execution.
+    AbortPlace = 8807,
     /// P8814: where single blocks stop.
     SingleRule = 8814,
     /// P8815: feed of a test.

@@ -159,3 +159,95 @@ fn the_cycle_that_is_executed_is_shown() {
     );
     rig.until_end(1);
 }
+
+/// A program with a loop that is broken off in its second round, at N40: P8804 passes over the first round without a movement,
+/// M4 (bit 5) goes out and M5 does not, X and Y go straight to where N40 begins with P8816, and the program goes on there
+/// [002:4165-4216].
+#[test]
+fn a_restart_comes_back_to_the_contour() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11051: $00000321\nP8816: 1200\n"));
+    let text = "N10 G1 X10 F3000 M4\nN20 G91 M5\nN30 X20\nN40 Y15\nN50 M24.30.1\nN60 G90 X0 Y0\nN70 M30\n";
+    rig.start_text(text);
+    rig.until(|rig| rig.read("P12351") > 20.0);
+    rig.operator("P8683", "1");
+    rig.seconds(0.5);
+    let kept = ["P8802", "P8803", "P8685"].map(|name| rig.read(name));
+    assert_eq!(kept, [1000.0, 40.0, 0.0]);
+    let place = rig.read("P8807");
+    // Axes are moved away by hand.
+    rig.plc("P12111", "-30");
+    rig.plc("P12311", "-20");
+    rig.until(|rig| rig.read("P12191") == 1.0 && rig.read("P12391") == 1.0);
+    let [x, y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    let sent = rig.control.transfers().count();
+    rig.operator("P8804", "1");
+    rig.load_text(text);
+    rig.operator("P8683", "2");
+    rig.seconds(0.05);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8686") == 1.0);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.until(|rig| rig.read("P8938") > 1190.0);
+    assert!(rig.read("P8938") < 1201.0, "{}", rig.read("P8938"));
+    // On the line to X 50, Y 15.
+    let [now_x, now_y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    let along = (now_x - x) / (50.0 - x);
+    assert!(((now_y - y) / (15.0 - y) - along).abs() < 0.01, "{now_x} {now_y}");
+    rig.until(|rig| rig.read("P8686") == 0.0);
+    assert_eq!((rig.read("P8804"), rig.read("P8901")), (0.0, 40.0));
+    assert!((rig.read("P12151") - 50.0).abs() < 0.001 && (rig.read("P12351") - 15.0).abs() < 0.5);
+    let went: Vec<u16> = rig.control.transfers().skip(sent).map(|one| one.m).collect();
+    assert_eq!(went, [4]);
+    rig.until(|rig| rig.read("P12351") > 29.9);
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 0.0));
+    assert!(place > 4.0, "the second round");
+    // A program that has ended keeps nothing: P8804 is taken back, and it begins at its begin.
+    assert_eq!(["P8802", "P8803", "P8807"].map(|name| rig.read(name)), [0.0; 3]);
+    rig.operator("P8804", "1");
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8901") == 10.0);
+    assert_eq!((rig.read("P8804"), rig.read("P8686")), (0.0, 0.0));
+    assert_eq!(rig.control.messages(), []);
+}
+
+/// In a cycle a restart begins with its first block; broken off again on its way, it keeps its place.
+#[test]
+fn a_restart_begins_a_cycle_anew() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11069: $00004000\n"));
+    let start = |rig: &mut Rig| {
+        let beside: MemoryFiles = [("Z77.900", "N5 X20\nN6 Y30\n")].into_iter().collect();
+        let text = b"N10 G1 X10 F3000 M77\nN20 G1 X0\nN30 M30\n";
+        let program = Reader900::new("P1000.900", text, 1, Position::ZERO, Arc::new(beside));
+        rig.load_text("");
+        rig.control.set_program(1, Some(Box::new(program)));
+        rig.operator("P8683", "2");
+        rig.seconds(0.05);
+        rig.operator("P8682", "2");
+        rig.until(|rig| rig.read("P8685") == 2.0);
+    };
+    start(&mut rig);
+    rig.until(|rig| rig.read("P12351") > 10.0);
+    rig.plc("P8705", "1");
+    rig.seconds(0.5);
+    let place = rig.read("P8807");
+    rig.operator("P8804", "1");
+    start(&mut rig);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.plc("P8705", "1");
+    rig.seconds(0.5);
+    let kept = ["P8686", "P8804", "P8807", "P8803"].map(|name| rig.read(name));
+    assert_eq!(kept, [0.0, 1.0, place, 6.0]);
+    start(&mut rig);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.until(|rig| rig.read("P8686") == 0.0);
+    assert_eq!(rig.read("P8905"), 5.0);
+    assert!(
+        rig.read("P12351").abs() < 0.01 && rig.read("P12151") < 11.0,
+        "{} {}",
+        rig.read("P12151"),
+        rig.read("P12351")
+    );
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 30.0));
+}
