@@ -272,6 +272,11 @@ impl Site<'_> {
         if matches!(rule.acts, Acts::None | Acts::Cycle) {
             return;
         }
+        // By hand they go out.
+        let without = self.memory.of_channel(self.number, ChannelParameter::WithoutM);
+        if self.at.is_some() && without.whole() == Some(1) {
+            return;
+        }
         let place = self.at.map_or(Place::Start, |at| at.place);
         let branch = rule.acts == Acts::Branch;
         let stop = branch || rule.acts == Acts::Stop;

@@ -44,19 +44,25 @@ fn a_program_runs_with_the_parameters_of_its_control() {
     assert_eq!(rig.control.messages(), []);
 }
 
-/// M26: P8715 ends the way to X 100 within the ramp, P8695 gets the number of the block, and the program goes on after it from
+/// M26: P8715, or the measuring key P8716, ends the way to X 100 within the ramp, P8695 gets the number of the block, and the program goes on after it from
 /// where X stands: G1 and F of the block stay in force [002:3717-3727].
 #[test]
 fn p8715_ends_the_way_of_m26() {
+    for signal in ["P8715", "P8716"] {
+        ends_the_way(signal);
+    }
+}
+
+fn ends_the_way(signal: &str) {
     let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\n"));
     rig.start_text("N10 G1 X40 F6000\nN20 X100 F3000 M26\nN30 G91 Y10\nN40 G90 X0\nN50 M30\n");
     // Before its block the signal does nothing.
     rig.until(|rig| rig.exact("P12151") > 20.0);
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     rig.until(|rig| rig.exact("P12151") > 60.0);
-    rig.plc("P8715", "0");
+    rig.plc(signal, "0");
     let from = rig.exact("P12151");
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     assert_eq!(rig.read("P8695"), 20.0);
     rig.until(|rig| rig.read("P8901") == 30.0);
     // 50 mm/s brake on a ramp of 250 ms to 100 mm/s: 3.125 mm, begun within a cycle of 4 ms.
@@ -70,11 +76,11 @@ fn p8715_ends_the_way_of_m26() {
     assert_eq!(rig.control.messages(), []);
 
     // Without the signal, and with one after its end, the way is gone to its end.
-    rig.plc("P8715", "0");
+    rig.plc(signal, "0");
     rig.start_text("N10 G1 X50 F3000 M26\nN20 X60\nN30 M30\n");
     rig.until(|rig| rig.read("P8901") == 20.0);
     assert_eq!(rig.exact("P12151").floor(), 50.0);
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     rig.until_end(1);
     assert_eq!(rig.read("P12151"), 60.0);
     assert_eq!(rig.read("P8695"), 20.0, "the earlier one");
@@ -250,4 +256,20 @@ fn a_restart_begins_a_cycle_anew() {
     );
     rig.until_end(1);
     assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 30.0));
+}
+
+/// The corner of G12 is shown in its block; P8892 ends with the change to HAND [002:4762-4782].
+#[test]
+fn corners_are_shown_and_mirrors_end_by_hand() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP8892: $1\n"));
+    rig.start_text("N10 P71:1 G1 G12 X-10 F600\nN20 Y10\nN30 M30\n");
+    rig.until(|rig| rig.read("P8901") == 10.0);
+    assert_eq!(rig.read("P8946"), 12.0);
+    rig.until(|rig| rig.read("P8901") == 20.0 && rig.exact("P12351") > 2.0);
+    assert!(rig.read("P8946").is_nan());
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P8892")), (10.0, 1.0));
+    rig.operator("P8683", "1");
+    rig.seconds(0.05);
+    assert_eq!(rig.read("P8892"), 0.0);
 }
