@@ -80,18 +80,74 @@ pub(crate) fn jump(machine: &mut Machine, k: usize) {
     }
 }
 
-/// P12153: where the axes were when the way was given up, as they are displayed.
+/// P8717: a further position may be measured; that none was taken yet is said to the PLC [002:3724-3729].
+pub(crate) fn release_measuring(machine: &mut Machine, number: u8) {
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::MeasuredBlock, 0);
+    show_measured(machine, usize::from(number) - 1, 0);
+}
+
+/// P8716: the measuring key takes the positions where they are released, and ends the way of a block with M26 [002:3892-3901].
+pub(crate) fn measure(machine: &mut Machine, number: u8) {
+    let k = usize::from(number) - 1;
+    end_the_way(machine, number);
+    let release = machine
+        .memory
+        .of_channel(number, ChannelParameter::MeasuringRelease)
+        .whole();
+    if !matches!(release, Some(1 | 2)) {
+        return;
+    }
+    store_measured(machine, k);
+    show_measured(machine, k, 1);
+    let block = machine.channels.get(k).map(|channel| channel.block());
+    let block = block.map_or(0, |block| i64::from(machine.block_number(k, block)));
+    machine
+        .memory
+        .set_channel(number, ChannelParameter::MeasuredBlock, block);
+    if release == Some(1) {
+        machine
+            .memory
+            .set_channel(number, ChannelParameter::MeasuringRelease, 0);
+    }
+}
+
+/// P12181 of the axes of a channel.
+fn show_measured(machine: &mut Machine, k: usize, bits: i32) {
+    for place in machine
+        .places
+        .iter()
+        .filter(|place| usize::from(place.channel) == k && place.logical > 0)
+    {
+        if let Some(of) = Memory::axis_place(place.physical, AxisParameter::Measured) {
+            machine.memory.store_bits(of, bits);
+        }
+    }
+}
+
+/// P12153: where the axes are, as they are displayed, or in the machine where P8855 says so.
 fn store_measured(machine: &mut Machine, k: usize) {
     let decimals = machine.memory.position_decimals(k as u8 + 1);
+    let reference = machine
+        .memory
+        .of_channel(k as u8 + 1, ChannelParameter::MeasuringReference);
+    let in_machine = reference.whole() == Some(1);
     for place in machine
         .places
         .iter()
         .filter(|place| usize::from(place.channel) == k && place.logical > 0)
     {
         let own = |parameter| Memory::own_place(place.channel + 1, place.logical, parameter);
-        let display = machine.memory.at(own(AxisParameter::DisplayPosition)).number();
+        let measured = match in_machine {
+            true => machine
+                .memory
+                .of_axis(place.physical, AxisParameter::MachinePosition)
+                .number(),
+            false => machine.memory.at(own(AxisParameter::DisplayPosition)).number(),
+        };
         machine
             .memory
-            .store(own(AxisParameter::MeasuredPosition), display, decimals);
+            .store(own(AxisParameter::MeasuredPosition), measured, decimals);
     }
 }

@@ -88,6 +88,15 @@ impl Written {
     }
 }
 
+/// A restart on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Restart {
+    /// The program is read up to a block, by its place in the order of execution.
+    Simulating(u64),
+    /// The axes go to where this block begins.
+    Approaching(u64),
+}
+
 /// A channel of the control.
 #[derive(Clone)]
 pub(crate) struct Channel {
@@ -134,6 +143,12 @@ pub(crate) struct Channel {
     pub override_percent: f64,
     /// P8817: the feed of the block of this place in the order of execution, mm/min.
     pub block_feed: Option<(u64, f64)>,
+    /// A restart at the contour is on its way.
+    pub restart: Option<Restart>,
+    /// Where the axes stood when its program began from its start.
+    pub began_at: Option<Position>,
+    /// Where a restart would begin, by the order of execution, and whether that is in a cycle.
+    pub place: Option<(u64, bool)>,
     /// The block whose fault has broken the program off.
     pub faulty: Option<BlockRef>,
 }
@@ -180,6 +195,9 @@ impl Channel {
             shown_sequence: None,
             override_percent: 100.0,
             block_feed: None,
+            restart: None,
+            began_at: None,
+            place: None,
             faulty: None,
         }
     }
@@ -252,6 +270,11 @@ impl Site<'_> {
     pub fn transfer(&mut self, m: u16, target: Option<u32>) {
         let rule = self.m.rule(m);
         if matches!(rule.acts, Acts::None | Acts::Cycle) {
+            return;
+        }
+        // By hand they go out.
+        let without = self.memory.of_channel(self.number, ChannelParameter::WithoutM);
+        if self.at.is_some() && without.whole() == Some(1) {
             return;
         }
         let place = self.at.map_or(Place::Start, |at| at.place);

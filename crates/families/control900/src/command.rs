@@ -68,6 +68,8 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
         }
         ChannelParameter::BlockRelease if is_set => release(machine, number),
         ChannelParameter::BlockFeed => take_block_feed(machine, number),
+        ChannelParameter::MeasuringKey if value == Some(1) => branch::measure(machine, number),
+        ChannelParameter::MeasuringRelease if is_set => branch::release_measuring(machine, number),
         ChannelParameter::EndWay if value == Some(1) => branch::end_the_way(machine, number),
         ChannelParameter::Acknowledge => acknowledge(machine, number),
         ChannelParameter::SystemMessage
@@ -145,7 +147,13 @@ fn take_mode(machine: &mut Machine, number: u8, mode: i64) {
         (Mode::Hand, Mode::Hand) => {}
         // Definitions of M functions take effect with the change from HAND to AUTO [002:2088-2089].
         (Mode::Hand, _) => channel.m.read(&machine.memory, number),
-        (_, Mode::Hand) => channel.wanted.abort = true,
+        (_, Mode::Hand) => {
+            channel.wanted.abort = true;
+            // The mirrors of axes end with it [002:4762-4782].
+            machine
+                .memory
+                .set_channel(number, ChannelParameter::AxisMirror, 0);
+        }
         _ => {}
     }
     machine

@@ -16,7 +16,7 @@ use crate::message::{Kind, Message};
 use crate::plc_run::PlcRun;
 use crate::setup::Setup;
 use crate::transfer::Transfer;
-use crate::{branch, command, monitor, status};
+use crate::{branch, command, monitor, preparing, status};
 
 /// A control. A clone goes on by itself, with the same bits.
 #[derive(Clone)]
@@ -89,7 +89,7 @@ impl Control900 {
         self.machine.written.reserve();
         for k in 0..self.machine.channels.len() {
             branch::jump(&mut self.machine, k);
-            self.machine.prepare(k);
+            preparing::prepare(&mut self.machine, k);
         }
     }
 

@@ -9,7 +9,7 @@ use bahn_system900::{ChannelParameter, Event, Place, Writer};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, command, coupling, enable, hand, plc, plc_run};
+use crate::{branch, command, coupling, enable, hand, plc, plc_run, restart};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -91,6 +91,8 @@ impl Family for Machine {
 
     fn transfer(&mut self) {
         branch::follow_branches(self);
+        restart::note_place(self);
+        restart::follow(self);
     }
 
     fn end_cycle(&mut self, _: &Measured) {}
@@ -112,6 +114,7 @@ fn take(machine: &mut Machine, k: usize, stop: Stop<RunFault>) {
             for parameter in [ChannelParameter::BrokenProgram, ChannelParameter::BrokenBlock] {
                 machine.memory.set_channel(number, parameter, 0);
             }
+            restart::forget(machine, k);
             machine.leave(k);
             if let Some((run, ..)) = machine.parts(k) {
                 run.end();

@@ -74,6 +74,38 @@ fn manual_feed(machine: &Machine, number: u8) -> f64 {
     of(ChannelParameter::ManualFeed).min(of(ChannelParameter::ManualFeedMax))
 }
 
+/// P8756: the feed by hand, where one is given.
+fn show_feed(machine: &mut Machine, number: u8, feed: f64) {
+    if let Some(place) = machine
+        .memory
+        .channel_place(number, ChannelParameter::ManualFeedActual)
+    {
+        machine.memory.store(place, Some(feed), 3);
+    }
+}
+
+/// P12171 to P12173: how fast an axis goes to a relative, absolute, fixed position; 0 to the others.
+fn show_speeds(place: &AxisPlace, hand: &Hand, unit: &AxisUnit, memory: &mut Memory) {
+    let first = Memory::axis_place(place.physical, AxisParameter::RelativeSpeedActual);
+    let Some(first) = first.and_then(|first| first.q()) else {
+        return;
+    };
+    let reports = hand.goal.and_then(|goal| goal.reports);
+    let speed = unit.servo.actual_velocity_mm_min().abs();
+    let is = |parameter, after| {
+        reports.is_some_and(|report| (report.parameter, report.after) == (parameter, after))
+    };
+    let kinds = [
+        is(AxisParameter::Reached, 0),
+        is(AxisParameter::Reached, 1),
+        is(AxisParameter::FixedReached, 0),
+    ];
+    for (q, is_meant) in (first..).zip(kinds) {
+        let shown = if is_meant { speed } else { 0.0 };
+        memory.store(bahn_system900::Place::Q(q), Some(shown), 3);
+    }
+}
+
 /// The step by hand, mm.
 fn step_mm(machine: &Machine, number: u8) -> f64 {
     let at = machine
@@ -200,6 +232,8 @@ pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
         let Some(now) = machine.parts(k).map(|(_, _, site)| site.now) else {
             continue;
         };
+        let held = machine.channels.get(k).is_some_and(|channel| channel.safety_stop);
+        show_feed(machine, k as u8 + 1, feed);
         let axes = machine
             .places
             .iter()
@@ -209,7 +243,13 @@ pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
             if !is_hand {
                 hand.key = None;
             }
-            lead(place, hand, unit, feed, &now, &mut machine.memory);
+            if held && matches!(unit.mover, Mover::Manual | Mover::Positioning | Mover::Reference) {
+                // P8702: what leads it stays, and goes on afterwards.
+                unit.drive(now.time_s, Aim::Feed(0.0), place.block.max_mm_min);
+            } else if !held {
+                lead(place, hand, unit, feed, &now, &mut machine.memory);
+            }
+            show_speeds(place, hand, unit, &mut machine.memory);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bahn_kernel::{Axes, Circuit, Core, EmergencyStop, Feeder, Now, Run, RunFamily};
 use bahn_parameters::{EmergencyStopTest, PerPlcAxis};
-use bahn_path::{BlockRef, Position};
+use bahn_path::BlockRef;
 use bahn_system900::{ChannelParameter, Event, Memory, Place, ProgramName, Traffic, Writer};
 
 use crate::answers::Answers;
@@ -13,7 +13,7 @@ use crate::message::{Kind, Message, Messages};
 use crate::plc_run::PlcRun;
 use crate::setup::Setup;
 use crate::transfer::Transfers;
-use crate::units;
+use crate::{restart_place, units};
 
 /// The circuit is not tested at power-on: the manual names no test (inferred).
 const NO_TEST: EmergencyStopTest = EmergencyStopTest {
@@ -174,29 +174,6 @@ impl Machine {
         self.traffic.pass(&mut self.memory, time_ms, by, place);
     }
 
-    /// Reads ahead for a channel, outside the cycle; begins a run that is to begin.
-    pub fn prepare(&mut self, k: usize) {
-        let [_, start_block] = self.start_of(k);
-        let now_us = self.now_us;
-        let Some((run, _, mut site)) = self.parts(k) else {
-            return;
-        };
-        run.track.reserve();
-        if run.takes_begin(|| site.axes.rest()) {
-            run.begin();
-            run.set_off(&site.acting());
-            self.begin(k, start_block);
-        }
-        self.give_memory(k);
-        if let Some((run, Some(feeder), mut site)) = self.parts(k)
-            && run.progress().is_on_its_way()
-        {
-            let allowed = run.allowed(now_us);
-            run.prepare(feeder, allowed, Position::ZERO, &site.acting(), |_, _| {});
-        }
-        self.take_memory(k);
-    }
-
     /// The number of a block of the program of a channel, as programs write it.
     pub fn block_number(&self, k: usize, block: BlockRef) -> u32 {
         let feeder = self.channels.get(k).and_then(|channel| channel.feeder.as_ref());
@@ -242,41 +219,6 @@ impl Machine {
         {
             self.memory = memory;
         }
-    }
-
-    /// The program of a channel is read from a block on, 0 for its first.
-    fn begin(&mut self, k: usize, block: i64) {
-        let within = {
-            let axes = self.core.axes.of(k);
-            (axes.traverse_box(), axes.programmable())
-        };
-        let Some((_, _, mut site)) = self.parts(k) else {
-            return;
-        };
-        let here = site.acting().here();
-        let Some(channel) = self.channels.get_mut(k) else {
-            return;
-        };
-        (channel.branch, channel.residual, channel.jump) = (None, None, None);
-        channel.waits_for_m = false;
-        (channel.faulty, channel.shown_sequence) = (None, None);
-        let Some(program) = channel.starting() else {
-            return;
-        };
-        self.memory.forget_shifts(channel.number);
-        let mut feeder = Feeder::new(program.boxed(), channel.chain.clone(), within);
-        feeder.set_tap(self.keeps_path);
-        channel.feeder = Some(feeder);
-        self.give_memory(k);
-        let language = self.language;
-        if let Some((_, Some(feeder), _)) = self.parts(k) {
-            feeder.reader_mut().relocate(&here);
-            let block = u32::try_from(block).unwrap_or(0);
-            if let Some(language) = language {
-                (language.start)(feeder.reader_mut(), block);
-            }
-        }
-        self.take_memory(k);
     }
 
     /// A message comes, and does what its kind says.
@@ -333,9 +275,10 @@ impl Machine {
         if channel.run.progress().is_active() {
             let (number, block) = (channel.number, i64::from(self.block_number(k, channel.block())));
             let [program, _] = self.start_of(k);
+            if let Some(channel) = self.channels.get_mut(k) {
+                restart_place::keep(channel, &mut self.memory, program, block);
+            }
             for (parameter, value) in [
-                (ChannelParameter::AbortProgram, program),
-                (ChannelParameter::AbortBlock, block),
                 (ChannelParameter::BrokenProgram, program),
                 (ChannelParameter::BrokenBlock, block),
             ] {

@@ -127,8 +127,12 @@ AxisParameter {
     Voltage = 169,
     /// P12170: speed of the axis.
     AxisSpeed = 170,
+    /// P12171: speed to a relative position, actual; absolute and fixed follow.
+    RelativeSpeedActual = 171,
     /// P12180: reference point.
     ReferenceState = 180,
+    /// P12181: a measured position was taken.
+    Measured = 181,
     /// P12182: the emergency position is reached, or the basic one.
     EmergencyReached = 182,
     /// P12183: the fixed position is reached.

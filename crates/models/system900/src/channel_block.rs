@@ -67,10 +67,14 @@ ChannelParameter {
     StartRequest = 8684,
     /// P8685: state of the program [002:3669-3680].
     ProgramState = 8685,
+    /// P8686: how far a restart is [002:3697-3705].
+    RestartInfo = 8686,
     /// P8690: an M function by hand.
     ManualM = 8690,
     /// P8695: block whose way was ended by M26.
     ResidualBlock = 8695,
+    /// P8696: block in which a position was measured [002:3724-3729].
+    MeasuredBlock = 8696,
     /// P8700: the loops are enabled [002:3752-3756].
     LoopsEnabled = 8700,
     /// P8701: the axes are enabled [002:3758-3762].
@@ -97,6 +101,10 @@ ChannelParameter {
     Emergency4 = 8713,
     /// P8715: the way of a block with M26 ends [002:3889-3890].
     EndWay = 8715,
+    /// P8716: the measuring key of the software [002:3892-3894].
+    MeasuringKey = 8716,
+    /// P8717: a measured position may be taken, once 1, always 2 [002:3896-3901].
+    MeasuringRelease = 8717,
     /// P8750: how axes are moved by hand [002:3983-3993].
     ManualMode = 8750,
     /// P8751: the logical axis that is moved by hand.
@@ -125,6 +133,12 @@ ChannelParameter {
     AbortProgram = 8802,
     /// P8803: the block that was broken off.
     AbortBlock = 8803,
+    /// P8804: the next start is a restart at the contour [002:4165-4193].
+    Restart = 8804,
+    /// P8807: the place that was broken off in the order of execution.
+    AbortPlace = 8807,
+    /// P8813: no M function goes out [002:4268-4273].
+    WithoutM = 8813,
     /// P8814: where single blocks stop.
     SingleRule = 8814,
     /// P8815: feed of a test.
@@ -137,6 +151,8 @@ ChannelParameter {
     FeedPercent = 8818,
     /// P8820: emergency program 1 and its block; those of the others follow [002:4303-4314].
     EmergencyProgram = 8820,
+    /// P8855: what a measured position is: as displayed, or that of the machine 1 [002:4629-4632].
+    MeasuringReference = 8855,
     /// P8865: the override of the path.
     PathOverride = 8865,
     /// P8866: the override of relative positions.
@@ -145,6 +161,8 @@ ChannelParameter {
     AbsoluteOverride = 8867,
     /// P8891: axes whose moves hold the execution.
     AxisLock = 8891,
+    /// P8892: mirrored axes [002:4762-4782].
+    AxisMirror = 8892,
     /// P8900: the program that is executed.
     ActualProgram = 8900,
     /// P8901: the block that is executed.

@@ -27,7 +27,7 @@ const AFTER: u8 = 1 << 1;
 const STOP: u8 = 1 << 2;
 const SYNC: u8 = 1 << 3;
 const BRANCH: u8 = 1 << 4;
-const RESTART: u8 = 1 << 5;
+pub(crate) const RESTART: u8 = 1 << 5;
 const CYCLE: u8 = 1 << 6;
 
 /// How an M function acts.

@@ -1,7 +1,7 @@
 //! The M functions of a channel as they act: what is defined meanwhile takes effect with the change from HAND to AUTO
 //! [002:2088-2089] [002:5519-5521].
 
-use crate::m_functions::{M_MAX, MFunction, MRule, bits_of};
+use crate::m_functions::{M_MAX, MFunction, MRule, RESTART, bits_of};
 use crate::memory::Memory;
 
 /// The definitions of all M functions of a channel.
@@ -21,6 +21,12 @@ impl MTable {
         for (m, bits) in (0..).zip(&mut self.0) {
             *bits = bits_of(memory, channel, m);
         }
+    }
+
+    /// A function goes out in the simulation of a restart: bit 5.
+    pub fn restarts(&self, m: u16) -> bool {
+        let bits = self.0.get(usize::from(m)).copied().unwrap_or(0);
+        bits & RESTART != 0
     }
 
     /// How a function acts.

@@ -214,3 +214,44 @@ fn slopes_and_locks_act_on_axes() {
     rig.until_end(1);
     assert_eq!(rig.read("P12151"), 0.0);
 }
+
+/// P8702 holds what the PLC positions, too: it stops on its ramp and goes on afterwards. P12171 to P12173 show how fast the axis goes
+/// to its relative, absolute and fixed position [002:8442-8444].
+#[test]
+fn positions_of_the_plc_are_held_and_show_their_speeds() {
+    for (name, to, shown, reached) in [
+        ("P12111", "100", "P12171", "P12191"),
+        ("P12112", "100", "P12172", "P12192"),
+        ("P12133", "1", "P12173", "P12183"),
+    ] {
+        let mut rig = Rig::on("q2036: 100\nq2121: 3000\nq2122: 3000\nq2123: 3000\n");
+        rig.plc(name, to);
+        rig.until(|rig| rig.exact("P12151") > 30.0);
+        for other in ["P12171", "P12172", "P12173"] {
+            let speed = if other == shown { 3000.0 } else { 0.0 };
+            assert!((rig.read(other) - speed).abs() < 30.0, "{name} {other}");
+        }
+        rig.plc("P8702", "1");
+        let before = rig.exact("P12151");
+        rig.seconds(1.0);
+        // 50 mm/s brake on 3.125 mm.
+        let way = rig.exact("P12151") - before;
+        assert!((3.1..3.4).contains(&way), "{name} {way}");
+        assert_eq!(rig.read(reached), 0.0);
+        rig.plc("P8702", "0");
+        rig.until(|rig| rig.read(reached) == 1.0);
+        assert_eq!(rig.read("P12151"), 100.0);
+        rig.cycle();
+        assert_eq!(rig.read(shown), 0.0);
+    }
+}
+
+/// P8756 is P8755, at most P8754 [002:4013-4015].
+#[test]
+fn the_feed_by_hand_is_shown() {
+    let mut rig = Rig::on("P8755: 500\n");
+    assert_eq!(rig.read("P8756"), 500.0);
+    rig.plc("P8754", "400");
+    rig.cycle();
+    assert_eq!(rig.read("P8756"), 400.0);
+}

@@ -44,19 +44,25 @@ fn a_program_runs_with_the_parameters_of_its_control() {
     assert_eq!(rig.control.messages(), []);
 }
 
-/// M26: P8715 ends the way to X 100 within the ramp, P8695 gets the number of the block, and the program goes on after it from
+/// M26: P8715, or the measuring key P8716, ends the way to X 100 within the ramp, P8695 gets the number of the block, and the program goes on after it from
 /// where X stands: G1 and F of the block stay in force [002:3717-3727].
 #[test]
 fn p8715_ends_the_way_of_m26() {
+    for signal in ["P8715", "P8716"] {
+        ends_the_way(signal);
+    }
+}
+
+fn ends_the_way(signal: &str) {
     let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\n"));
     rig.start_text("N10 G1 X40 F6000\nN20 X100 F3000 M26\nN30 G91 Y10\nN40 G90 X0\nN50 M30\n");
     // Before its block the signal does nothing.
     rig.until(|rig| rig.exact("P12151") > 20.0);
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     rig.until(|rig| rig.exact("P12151") > 60.0);
-    rig.plc("P8715", "0");
+    rig.plc(signal, "0");
     let from = rig.exact("P12151");
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     assert_eq!(rig.read("P8695"), 20.0);
     rig.until(|rig| rig.read("P8901") == 30.0);
     // 50 mm/s brake on a ramp of 250 ms to 100 mm/s: 3.125 mm, begun within a cycle of 4 ms.
@@ -70,11 +76,11 @@ fn p8715_ends_the_way_of_m26() {
     assert_eq!(rig.control.messages(), []);
 
     // Without the signal, and with one after its end, the way is gone to its end.
-    rig.plc("P8715", "0");
+    rig.plc(signal, "0");
     rig.start_text("N10 G1 X50 F3000 M26\nN20 X60\nN30 M30\n");
     rig.until(|rig| rig.read("P8901") == 20.0);
     assert_eq!(rig.exact("P12151").floor(), 50.0);
-    rig.plc("P8715", "1");
+    rig.plc(signal, "1");
     rig.until_end(1);
     assert_eq!(rig.read("P12151"), 60.0);
     assert_eq!(rig.read("P8695"), 20.0, "the earlier one");
@@ -196,4 +202,112 @@ fn start_blocks_are_numbers_of_blocks() {
     rig.until(|rig| rig.read("P8685") == 2.0);
     assert_eq!(passed(&mut rig), [20.0, 300.0]);
     assert_eq!(rig.read("P12351"), 70.0);
+}
+
+/// A program with a loop that is broken off in its second round, at N40: P8804 passes over the first round without a movement,
+/// M4 (bit 5) goes out and M5 does not, X and Y go straight to where N40 begins with P8816, and the program goes on there
+/// [002:4165-4216].
+#[test]
+fn a_restart_comes_back_to_the_contour() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11051: $00000321\nP8816: 1200\n"));
+    let text = "N10 G1 X10 F3000 M4\nN20 G91 M5\nN30 X20\nN40 Y15\nN50 M24.30.1\nN60 G90 X0 Y0\nN70 M30\n";
+    rig.start_text(text);
+    rig.until(|rig| rig.read("P12351") > 20.0);
+    rig.operator("P8683", "1");
+    rig.seconds(0.5);
+    let kept = ["P8802", "P8803", "P8685"].map(|name| rig.read(name));
+    assert_eq!(kept, [1000.0, 40.0, 0.0]);
+    let place = rig.read("P8807");
+    // Axes are moved away by hand.
+    rig.plc("P12111", "-30");
+    rig.plc("P12311", "-20");
+    rig.until(|rig| rig.read("P12191") == 1.0 && rig.read("P12391") == 1.0);
+    let [x, y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    let sent = rig.control.transfers().count();
+    rig.operator("P8804", "1");
+    rig.load_text(text);
+    rig.operator("P8683", "2");
+    rig.seconds(0.05);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8686") == 1.0);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.until(|rig| rig.read("P8938") > 1190.0);
+    assert!(rig.read("P8938") < 1201.0, "{}", rig.read("P8938"));
+    // On the line to X 50, Y 15.
+    let [now_x, now_y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    let along = (now_x - x) / (50.0 - x);
+    assert!(((now_y - y) / (15.0 - y) - along).abs() < 0.01, "{now_x} {now_y}");
+    rig.until(|rig| rig.read("P8686") == 0.0);
+    assert_eq!((rig.read("P8804"), rig.read("P8901")), (0.0, 40.0));
+    assert!((rig.read("P12151") - 50.0).abs() < 0.001 && (rig.read("P12351") - 15.0).abs() < 0.5);
+    let went: Vec<u16> = rig.control.transfers().skip(sent).map(|one| one.m).collect();
+    assert_eq!(went, [4]);
+    rig.until(|rig| rig.read("P12351") > 29.9);
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 0.0));
+    assert!(place > 4.0, "the second round");
+    // A program that has ended keeps nothing: P8804 is taken back, and it begins at its begin.
+    assert_eq!(["P8802", "P8803", "P8807"].map(|name| rig.read(name)), [0.0; 3]);
+    rig.operator("P8804", "1");
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8901") == 10.0);
+    assert_eq!((rig.read("P8804"), rig.read("P8686")), (0.0, 0.0));
+    assert_eq!(rig.control.messages(), []);
+}
+
+/// In a cycle a restart begins with its first block; broken off again on its way, it keeps its place.
+#[test]
+fn a_restart_begins_a_cycle_anew() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP11069: $00004000\n"));
+    let start = |rig: &mut Rig| {
+        let beside: MemoryFiles = [("Z77.900", "N5 X20\nN6 Y30\n")].into_iter().collect();
+        let text = b"N10 G1 X10 F3000 M77\nN20 G1 X0\nN30 M30\n";
+        let program = Reader900::new("P1000.900", text, 1, Position::ZERO, Arc::new(beside));
+        rig.load_text("");
+        rig.control.set_program(1, Some(Box::new(program)));
+        rig.operator("P8683", "2");
+        rig.seconds(0.05);
+        rig.operator("P8682", "2");
+        rig.until(|rig| rig.read("P8685") == 2.0);
+    };
+    start(&mut rig);
+    rig.until(|rig| rig.read("P12351") > 10.0);
+    rig.plc("P8705", "1");
+    rig.seconds(0.5);
+    let place = rig.read("P8807");
+    rig.operator("P8804", "1");
+    start(&mut rig);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.plc("P8705", "1");
+    rig.seconds(0.5);
+    let kept = ["P8686", "P8804", "P8807", "P8803"].map(|name| rig.read(name));
+    assert_eq!(kept, [0.0, 1.0, place, 6.0]);
+    start(&mut rig);
+    rig.until(|rig| rig.read("P8686") == 2.0);
+    rig.until(|rig| rig.read("P8686") == 0.0);
+    assert_eq!(rig.read("P8905"), 5.0);
+    assert!(
+        rig.read("P12351").abs() < 0.01 && rig.read("P12151") < 11.0,
+        "{} {}",
+        rig.read("P12151"),
+        rig.read("P12351")
+    );
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (0.0, 30.0));
+}
+
+/// The corner of G12 is shown in its block; P8892 ends with the change to HAND [002:4762-4782].
+#[test]
+fn corners_are_shown_and_mirrors_end_by_hand() {
+    let mut rig = Rig::on(&(axis(5) + "q112: $0305005A\nP8892: $1\n"));
+    rig.start_text("N10 P71:1 G1 G12 X-10 F600\nN20 Y10\nN30 M30\n");
+    rig.until(|rig| rig.read("P8901") == 10.0);
+    assert_eq!(rig.read("P8946"), 12.0);
+    rig.until(|rig| rig.read("P8901") == 20.0 && rig.exact("P12351") > 2.0);
+    assert!(rig.read("P8946").is_nan());
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P8892")), (10.0, 1.0));
+    rig.operator("P8683", "1");
+    rig.seconds(0.05);
+    assert_eq!(rig.read("P8892"), 0.0);
 }

@@ -189,3 +189,53 @@ fn an_m_function_goes_out_by_hand() {
     rig.operator("P8690", "4");
     assert_eq!(rig.control.transfers().count(), 1);
 }
+
+/// P8813: no M function goes to the PLC, the path waits for none, and a branch that would be confirmed does not branch; by hand they
+/// go out [002:4268-4273].
+#[test]
+fn without_m_functions_none_goes_out() {
+    let mut rig = Rig::on(&format!("{EXAMPLE}P8813: 1\n"));
+    rig.operator("P8690", "4");
+    assert_eq!(rig.control.transfers().count(), 1);
+    let x = |x| Line::to(&[(Axis::X, x)], 3000.0);
+    let branch = Function::Branch { m: 7, target: 10 };
+    let lines = [
+        x(20.0).with(6, At::Start, Synchronisation::MvsSvs),
+        x(40.0).says(branch, At::Start, Synchronisation::MvsSvs),
+        x(60.0).with(4, At::Start, Synchronisation::Mos),
+    ];
+    rig.start(1, &lines);
+    rig.until(|rig| rig.read("P12151") > 25.0);
+    rig.plc("P8706", "1");
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.control.transfers().count()), (60.0, 1));
+}
+
+/// The measuring key P8716 takes the display positions where P8717 has released it, once or always; with P8855 those of the machine.
+/// P8696 gets the block, P12181 says that it was taken; a new release takes both back [002:3724-3729] [002:3892-3901].
+#[test]
+fn the_measuring_key_takes_positions() {
+    let mut rig = Rig::on("");
+    rig.start(1, &[Line::to(&[(Axis::X, 200.0)], 3000.0)]);
+    rig.until(|rig| rig.read("P12154") > 20.0);
+    rig.plc("P8716", "1");
+    assert!(rig.read("P12153").is_nan(), "it is not released");
+    rig.plc("P8717", "1");
+    let at = rig.read("P12154");
+    rig.plc("P8716", "1");
+    assert_eq!(["P12153", "P12353"].map(|name| rig.read(name)), [at, 0.0]);
+    let said = ["P8696", "P8717", "P12181"].map(|name| rig.read(name));
+    assert_eq!(said, [10.0, 0.0, 1.0]);
+    rig.seconds(0.1);
+    rig.plc("P8716", "1");
+    assert_eq!(rig.read("P12153"), at, "once");
+    rig.plc("P8717", "2");
+    assert_eq!((rig.read("P8696"), rig.read("P12181")), (0.0, 0.0));
+    rig.plc("P8855", "1");
+    for _ in 0..2 {
+        rig.seconds(0.1);
+        rig.plc("P8716", "1");
+        assert_eq!(rig.read("P12153"), rig.read("P12150"));
+        assert!(rig.read("P12150") < rig.read("P12154"), "the lag");
+    }
+}
