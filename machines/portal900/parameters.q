@@ -470,8 +470,8 @@ q3612: 100 $20010001              ; INC for each degree, quadrupled
 q3613: 1 $20010001
 q3614: $00000000 $30010001
 q3615: $01000000 $30010001        ; it knows its position at power-on: P12152
-q3616: 0.02 $23010001             ; exact stop, degree
-q3617: 0.16 $23010001             ; coarse
+q3616: 0.5 $23010001              ; exact stop, degree
+q3617: 2 $23010001                ; coarse
 q3618: 3000 $20010001             ; standstill within, ms
 q3620: 10 $21010001               ; Kv, 1/s
 q3622: 10000 $20010001            ; drift, ms
@@ -493,8 +493,8 @@ q3812: 100 $20010001              ; INC for each degree, quadrupled
 q3813: 1 $20010001
 q3814: $00000000 $30010001
 q3815: $01000000 $30010001        ; it knows its position at power-on: P12152
-q3816: 0.02 $23010001             ; exact stop, degree
-q3817: 0.16 $23010001             ; coarse
+q3816: 0.5 $23010001              ; exact stop, degree
+q3817: 2 $23010001                ; coarse
 q3818: 3000 $20010001             ; standstill within, ms
 q3820: 10 $21010001               ; Kv, 1/s
 q3822: 10000 $20010001            ; drift, ms

@@ -117,10 +117,12 @@ impl Window900 {
         for entry in &mut self.functions {
             let channel = usize::from(entry.channel).checked_sub(1);
             let channel = channel.and_then(|k| machine.channels.get(k));
+            // Another function may wait since this one was acknowledged.
+            let is_open = |entry: &FunctionEntry| machine.transfers.is_open(entry.channel, entry.m);
             let stays = channel.is_some_and(|channel| match entry.shown {
                 Shown::No | Shown::Flying => false,
-                Shown::Stop => channel.waits_for_m,
-                Shown::Branch => channel.branch.is_some(),
+                Shown::Stop => channel.waits_for_m && is_open(entry),
+                Shown::Branch => channel.branch.is_some() && is_open(entry),
             });
             if !stays {
                 entry.shown = Shown::No;

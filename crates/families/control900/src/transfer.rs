@@ -94,6 +94,13 @@ impl Transfers {
         self.list.iter().skip(self.list.len().saturating_sub(new))
     }
 
+    /// The last one of a function of a channel was neither acknowledged nor taken.
+    pub fn is_open(&self, channel: u8, m: u16) -> bool {
+        let mut latest = self.list.iter().rev();
+        let last = latest.find(|transfer| (transfer.channel, transfer.m) == (channel, m));
+        last.is_some_and(|transfer| transfer.ack_us.is_none())
+    }
+
     /// Those of a channel that wait are acknowledged.
     pub fn acknowledge(&mut self, channel: u8, now_us: u64) {
         let own = self

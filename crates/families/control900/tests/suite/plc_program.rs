@@ -195,6 +195,22 @@ fn m_functions_have_markers() {
     );
 }
 
+/// Each function with stop has its own acknowledgement: of three in a row never two markers are 1 at once.
+#[test]
+fn an_acknowledged_function_is_over() {
+    let program = "       L     M405\n       A     M406\n       S     M20\n       L     M405\n       O     M406\n       = M305\n";
+    let mut rig = on("P11051: $00050500\n", program, |window| {
+        window
+            .function(1, 5, "M405".parse().unwrap())
+            .function(1, 6, "M406".parse().unwrap())
+    });
+    let line = |m: u16| Line::to(&[], 6000.0).with(m, At::Start, Synchronisation::MvsSvs);
+    rig.start(1, &[line(5), line(6), line(5), line(6), Line::to(&[(Axis::X, 10.0)], 6000.0)]);
+    rig.until_end(1);
+    assert_eq!(rig.control.transfers().filter(|transfer| transfer.ack_us.is_some()).count(), 4);
+    assert!(!rig.control.plc().unwrap().plc().bit("M20".parse().unwrap()));
+}
+
 /// What the operator gives beside the PLC, as a script does, is seen by it.
 #[test]
 fn the_operator_may_be_the_plc_too() {

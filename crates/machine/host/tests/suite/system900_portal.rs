@@ -10,15 +10,19 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900")
 }
 
-/// The portal that was never on, with the operator who starts its programs.
+/// The portal that was never on, with the operator who starts its programs, and goes on where one waits.
 fn portal() -> Host900 {
+    attended(Attendance::Full)
+}
+
+fn attended(attendance: Attendance) -> Host900 {
     let machine = Machine900::load(&folder())
         .unwrap()
         .unwrap_or_else(|faults| panic!("{faults:?}"));
     let power_on = PowerOn900::fresh(&machine);
     let plant = machine.plant(&power_on.memory);
     let job = Job900 { single_block: false };
-    Host::of_system900(power_on, plant, Operator900::new(Attendance::Full, job))
+    Host::of_system900(power_on, plant, Operator900::new(attendance, job))
 }
 
 fn read(host: &Host900, name: &str) -> f64 {
@@ -73,7 +77,9 @@ fn both_heads_work_and_share_the_beam() {
             waited += 1;
             assert!(read(host, "2:P12151") > 2599.9, "its X stands at 2600");
         }
-        nearest = nearest.min(read(host, "q2950") - read(host, "q2150"));
+        if read(host, "P8685") == 2.0 {
+            nearest = nearest.min(read(host, "q2950") - read(host, "q2150"));
+        }
         lag = lag.max(read(host, "P12160").abs());
         rpm = rpm.max(read(host, "P11649"));
         both_have_ended(host)
@@ -111,7 +117,7 @@ fn the_tool_is_changed_by_the_plc() {
     let changes: Vec<f64> = waited.collect();
     assert_eq!(changes.len(), 2);
     assert!((1.9..2.3).contains(&changes[0]), "{changes:?}");
-    assert!((0.96..1.3).contains(&(changes[1] - changes[0])), "{changes:?}");
+    assert!((0.9..1.3).contains(&(changes[1] - changes[0])), "{changes:?}");
     assert_eq!(["P8100", "P8102", "P510"].map(|name| read(&host, name)), [5.0; 3]);
 }
 
@@ -176,9 +182,11 @@ fn the_shipped_scripts_are_right() {
         let stage = Stage900::new(machine.parameters.memory(), &plant);
         let script = stage.script(&path, &std::fs::read(&path).unwrap());
         let mut play = Play::new(script.unwrap_or_else(|faults| panic!("{name}: {faults:?}")));
-        let mut host = portal();
+        // Beside a script the operator does no more than the first start.
+        let mut host = attended(Attendance::Start);
         let mut started = false;
-        while !(started && is_over(&host)) {
+        let mut rests = 0;
+        while !started || rests < 1000 {
             let now = host.control().now_us();
             assert!(
                 now < 300_000_000,
@@ -188,6 +196,9 @@ fn the_shipped_scripts_are_right() {
             );
             play.follow900(&mut host).unwrap();
             host.step().unwrap();
+            let runs = (1..=2).any(|channel| host.control().is_on_its_way(channel));
+            // For 2 s no program is on its way: none is started any more.
+            rests = if runs { 0 } else { rests + 1 };
             if !started && host.control().is_on_its_way(1) {
                 started = true;
                 play.start(now);
@@ -202,11 +213,6 @@ fn the_shipped_scripts_are_right() {
             state(&host)
         );
     }
-}
-
-/// No program is on its way, and nobody starts one: after an abort the script does, within a second.
-fn is_over(host: &Host900) -> bool {
-    both_have_ended(host)
 }
 
 fn act(host: &mut Host900, event: &str) {
