@@ -7,7 +7,8 @@ use bahn_live::{Input, Live};
 use bahn_panel900::{Service900, Station900};
 use bahn_server::{Server, ServerOptions};
 
-use super::{PanelOptions, in_use, in_words, terminal, until_ctrl_c};
+use super::options::PanelOptions;
+use super::shown::{in_use, in_words, say_page, terminal, until_ctrl_c};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics};
 
@@ -54,7 +55,7 @@ fn serve(
     let server = served.map(|served| Server::start(service.clone(), served));
     let server = server.transpose().map_err(in_words)?;
     if let Some(server) = &server {
-        options.say_page(name, server);
+        say_page(options, name, server);
     }
     let shown = match options.in_the_terminal() {
         true => terminal::show(service, || interrupt.is_requested() || live.has_ended()),
