@@ -16,7 +16,7 @@ use bahn_ports::{PanelPorts, RunningPorts};
 use bahn_server::{Server, ServerOptions, Tokens};
 use bahn_service::MachineService;
 
-use shown::{in_use, in_words, say_page, terminal, until_ctrl_c};
+use shown::{in_use, in_words, say_page, terminal};
 
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics, files, link, machine_folder};
@@ -71,15 +71,9 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     if let Some(server) = &desk.server {
         say_page(options, &name, server);
     }
-    let shown = match options.in_the_terminal() {
-        true => terminal::show(desk.machine.clone(), || {
-            interrupt.is_requested() || desk.live.has_ended()
-        }),
-        false => {
-            until_ctrl_c(&interrupt);
-            Ok(())
-        }
-    };
+    let shown = shown::show(options, desk.machine.clone(), &interrupt, || {
+        desk.live.has_ended()
+    });
     // Whatever became of the terminal, what was done is kept.
     desk.end()?;
     shown.map(|()| Outcome::Fine)

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use bahn_host::HostError;
 use bahn_server::Server;
+use bahn_service::Operated;
 
 use super::options::PanelOptions;
 use crate::interrupt::Interrupt;
@@ -40,11 +41,20 @@ pub(super) fn say_page(options: &PanelOptions, name: &str, server: &Server) {
     }
 }
 
-/// Waits for Ctrl-C.
-pub(super) fn until_ctrl_c(interrupt: &Interrupt) {
+/// Shows the panel in the terminal where that is wanted, until the operator leaves or Ctrl-C ends it.
+pub(super) fn show(
+    options: &PanelOptions,
+    machine: impl Operated + 'static,
+    interrupt: &Interrupt,
+    has_ended: impl Fn() -> bool,
+) -> Result<(), UsageError> {
+    if options.in_the_terminal() {
+        return terminal::show(machine, || interrupt.is_requested() || has_ended());
+    }
     while !interrupt.is_requested() {
         std::thread::sleep(LOOK);
     }
+    Ok(())
 }
 
 pub(super) fn in_words(error: impl std::fmt::Display) -> UsageError {

@@ -224,6 +224,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "host",
             "kernel",
             "live",
+            "path",
             "screen",
             "service",
             "system900",
