@@ -1,6 +1,7 @@
 //! How a command ended, and what was wrong with its use.
 
 use std::fmt;
+use std::path::Path;
 
 use bahn_host::HostError;
 use bahn_ports::PortError;
@@ -39,6 +40,17 @@ pub(super) struct UsageError(String);
 impl UsageError {
     pub(super) fn new(text: impl Into<String>) -> UsageError {
         UsageError(text.into())
+    }
+
+    /// Options that mean something to a TNC alone are refused where a folder has a System 900.
+    pub(super) fn unless_of_a_tnc(given: &[(&str, bool)], folder: &Path) -> Result<(), UsageError> {
+        let given = given.iter().find(|(_, given)| *given);
+        given.map_or(Ok(()), |(option, _)| {
+            let folder = folder.display();
+            Err(UsageError(format!(
+                "{option} is for a TNC, and {folder} has a System 900"
+            )))
+        })
     }
 }
 

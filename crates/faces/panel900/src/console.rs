@@ -94,7 +94,7 @@ impl Console {
         let pages = [
             sight.words("POSITIONS"),
             sight.words("PROGRAM"),
-            sight.words("PARA- METERS"),
+            sight.words("PARAMETERS"),
             sight.words("ZERO POINTS"),
             sight.words("TOOLS"),
             sight.words("MESSAGES"),

@@ -11,6 +11,7 @@
 use bahn_control900::Mode;
 use bahn_host::{KeyAction, reference_drives};
 use bahn_live::Refusal;
+use bahn_path::Direction;
 use bahn_service::SurfaceKey;
 use bahn_system900::{ChannelParameter, Name};
 
@@ -101,9 +102,9 @@ impl Held {
         if action == KeyAction::Press {
             self.names.push(name.to_owned());
         }
-        if let Some((axis, plus)) = direction(name) {
+        if let Some((axis, direction)) = direction(name) {
             if is_down {
-                move_axis(axis, plus, desk)?;
+                move_axis(axis, direction, desk)?;
             }
             if taps {
                 let until = desk.host.control().now_us() + TAP_US;
@@ -223,13 +224,13 @@ fn start_key(name: &str, is_down: bool, taps: bool, desk: &mut Desk<'_>) -> Resu
     }
 }
 
-/// The axis of a direction key, and whether it goes plus.
-fn direction(name: &str) -> Option<(&str, bool)> {
-    let plus = name.strip_suffix('+').map(|axis| (axis, true));
-    plus.or_else(|| name.strip_suffix('-').map(|axis| (axis, false)))
+/// The axis of a direction key, and where it goes.
+fn direction(name: &str) -> Option<(&str, Direction)> {
+    let plus = name.strip_suffix('+').map(|axis| (axis, Direction::Plus));
+    plus.or_else(|| name.strip_suffix('-').map(|axis| (axis, Direction::Minus)))
 }
 
-fn move_axis(axis: &str, plus: bool, desk: &mut Desk<'_>) -> Result<(), Refusal> {
+fn move_axis(axis: &str, direction: Direction, desk: &mut Desk<'_>) -> Result<(), Refusal> {
     let sight = desk.sight();
     let logical = sight.axes().find(|own| own.name == axis).map(|own| own.logical);
     let channel = sight.channel;
@@ -240,5 +241,9 @@ fn move_axis(axis: &str, plus: bool, desk: &mut Desk<'_>) -> Result<(), Refusal>
         ));
     }
     desk.press(ChannelParameter::ManualAxis, &logical.to_string())?;
-    desk.press(ChannelParameter::ManualMove, if plus { "1" } else { "2" })
+    let order = match direction {
+        Direction::Plus => "1",
+        Direction::Minus => "2",
+    };
+    desk.press(ChannelParameter::ManualMove, order)
 }

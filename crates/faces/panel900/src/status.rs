@@ -184,7 +184,7 @@ fn flags(sight: &Sight<'_>) -> Vec<String> {
         let width = sight
             .memory()
             .of_channel(sight.channel, ChannelParameter::StepWidth);
-        format!("{} {}", sight.words("STEP"), width.written())
+        format!("{} {}", sight.words("STEP OF"), width.written())
     };
     let all = [
         zero.map(|point| format!("G{point}")),

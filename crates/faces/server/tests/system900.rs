@@ -60,7 +60,7 @@ fn the_interface_is_that_of_every_machine() {
             .as_array()
             .is_some_and(|axes| axes.len() == 3)
     });
-    assert_eq!(screen["soft_keys"]["keys"][2], "PARA- METERS");
+    assert_eq!(screen["soft_keys"]["keys"][2], "PARAMETERS");
     assert_eq!(screen["headings"][1]["key"], "CH2");
     assert_eq!(panel.get("/api/snapshot")["channels"][1]["axes"][3]["name"], "C");
     assert_eq!(panel.get("/api/drawer"), json!([]));

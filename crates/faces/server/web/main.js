@@ -94,6 +94,7 @@ function leaveOut(station) {
   const parts = {
     has_past: '[data-region="timeline"]', has_teacher: '[data-region="teacher"], [data-tab="teacher"]', has_part: '[data-key="3D_VIEW"]',
   };
+  document.body.classList.toggle("no-past", !station.has_past);
   for (const [name, selector] of Object.entries(parts)) {
     for (const node of document.querySelectorAll(selector)) node.hidden = !station[name];
   }

@@ -7,7 +7,7 @@ use bahn_browser::Browser;
 use bahn_panel::Screen;
 use bahn_ports::screen_picture;
 use bahn_server::{Server, ServerOptions, Tokens};
-use bahn_service::{Input, KeyAction, Live, MachineService, Operated, Station, load};
+use bahn_service::{Input, KeyAction, Live, MachineService, Station, load};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -129,7 +129,13 @@ fn all_who_draw_a_screen_show_the_same_texts() {
     // Ten blocks and four axes at least.
     assert!(said.len() >= 14, "{said:?}");
     let mut drawn = vec![
-        ("terminal", terminal(&screen, Machine::of(&machine.surface()))),
+        (
+            "terminal",
+            terminal(
+                &screen,
+                Machine::of(&bahn_service::Surface::of(machine.machine())),
+            ),
+        ),
         ("picture of LSV/2", picture(&screen)),
     ];
     if let Some(browser) = Browser::for_test().unwrap() {

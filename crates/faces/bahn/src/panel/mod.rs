@@ -1,37 +1,25 @@
 //! `bahn panel`: the operating panel of a machine that is on.
 
 mod options;
+mod shown;
 mod system900;
 
 pub(crate) use options::{EXAMPLES, PanelOptions};
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use bahn_host::files::NewFile;
-use bahn_host::{HostError, LoadedMachine, Machine900, PowerOn};
+use bahn_host::{LoadedMachine, Machine900, PowerOn};
 use bahn_panel::{Input, Live, Replay, Station, live_replay};
 use bahn_ports::{PanelPorts, RunningPorts};
 use bahn_server::{Server, ServerOptions, Tokens};
 use bahn_service::MachineService;
 
+use shown::{in_use, in_words, say_page, terminal};
+
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics, files, link, machine_folder};
-
-/// How often Ctrl-C is looked for.
-const LOOK: Duration = Duration::from_millis(50);
-
-/// A panel goes on with what the machine has kept: only one at a time can.
-fn in_use(error: HostError) -> UsageError {
-    match error {
-        HostError::SwitchedOn(_) => UsageError::new(format!(
-            "{error}; end what runs it, or give another folder with --machine (`bahn machine new` makes one)"
-        )),
-        other => other.into(),
-    }
-}
 
 /// Switches the machine on and shows its panel until Ctrl-C.
 pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
@@ -81,46 +69,14 @@ pub(crate) fn command(options: &PanelOptions) -> Result<Outcome, UsageError> {
     let interrupt = Interrupt::on_ctrl_c();
     let desk = Desk::open(begin(station, options)?, served, ports, options)?;
     if let Some(server) = &desk.server {
-        options.say_page(&name, server);
+        say_page(options, &name, server);
     }
-    let shown = match options.in_the_terminal() {
-        true => terminal::show(desk.machine.clone(), || {
-            interrupt.is_requested() || desk.live.has_ended()
-        }),
-        false => {
-            until_ctrl_c(&interrupt);
-            Ok(())
-        }
-    };
+    let shown = shown::show(options, desk.machine.clone(), &interrupt, || {
+        desk.live.has_ended()
+    });
     // Whatever became of the terminal, what was done is kept.
     desk.end()?;
     shown.map(|()| Outcome::Fine)
-}
-
-impl PanelOptions {
-    /// Says where a browser finds the page, with the token, and opens it when that is wanted.
-    fn say_page(&self, name: &str, server: &Server) {
-        let address = server.address();
-        let address = match &self.token {
-            Some(token) => format!("http://{address}/?token={token}"),
-            None => format!("http://{address}/"),
-        };
-        let ends = match self.in_the_terminal() {
-            true => "",
-            false => "; Ctrl-C switches the machine off",
-        };
-        diagnostics::print_text(&format!("{name}: the panel is at {address}{ends}"));
-        if self.open {
-            open(&address);
-        }
-    }
-}
-
-/// Waits for Ctrl-C.
-fn until_ctrl_c(interrupt: &Interrupt) {
-    while !interrupt.is_requested() {
-        std::thread::sleep(LOOK);
-    }
 }
 
 /// A station that runs, with its data interfaces, and served or not.
@@ -180,42 +136,6 @@ impl Desk {
     }
 }
 
-fn in_words(error: impl std::fmt::Display) -> UsageError {
-    UsageError::new(error.to_string())
-}
-
-/// The panel in the terminal.
-#[cfg(feature = "terminal")]
-mod terminal {
-    use bahn_service::Operated;
-
-    use crate::UsageError;
-
-    pub(super) fn check() -> Result<(), UsageError> {
-        bahn_terminal::check().map_err(|error| UsageError::new(error.to_string()))
-    }
-
-    pub(super) fn show(machine: impl Operated + 'static, ends: impl Fn() -> bool) -> Result<(), UsageError> {
-        bahn_terminal::show(machine, ends).map_err(|error| UsageError::new(error.to_string()))
-    }
-}
-
-/// Nothing asks for it in a build without it.
-#[cfg(not(feature = "terminal"))]
-mod terminal {
-    use bahn_service::Operated;
-
-    use crate::UsageError;
-
-    pub(super) fn check() -> Result<(), UsageError> {
-        Err(UsageError::new("this build has no panel in the terminal"))
-    }
-
-    pub(super) fn show(_: impl Operated + 'static, _: impl Fn() -> bool) -> Result<(), UsageError> {
-        check()
-    }
-}
-
 /// Lets the station run, after a session that is to be shown.
 fn begin(station: Station, options: &PanelOptions) -> Result<Live, UsageError> {
     let Some(path) = &options.replay else {
@@ -226,24 +146,6 @@ fn begin(station: Station, options: &PanelOptions) -> Result<Live, UsageError> {
         diagnostics::print_line(&format!("warning: {difference}"));
     }
     Ok(live_replay(station, replay))
-}
-
-/// Who has no browser opens the page elsewhere.
-fn open(address: &str) {
-    let opener = if cfg!(target_os = "macos") {
-        "open"
-    } else {
-        "xdg-open"
-    };
-    let opened = Command::new(opener)
-        .arg(address)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn();
-    if opened.is_err() {
-        diagnostics::print_text("no browser was found here: open that address in one");
-    }
 }
 
 /// The folder of the mill that needs no other: written when it is not there, and what is there stays.

@@ -7,7 +7,8 @@ use bahn_live::{Input, Live};
 use bahn_panel900::{Service900, Station900};
 use bahn_server::{Server, ServerOptions};
 
-use super::{PanelOptions, in_use, in_words, terminal, until_ctrl_c};
+use super::options::PanelOptions;
+use super::shown::{in_use, in_words, say_page, show};
 use crate::interrupt::Interrupt;
 use crate::{Outcome, UsageError, diagnostics};
 
@@ -17,12 +18,14 @@ pub(super) fn command(
     folder: &Path,
     served: Option<ServerOptions>,
 ) -> Result<Outcome, UsageError> {
-    if let Some(option) = of_a_tnc(options) {
-        return Err(UsageError::new(format!(
-            "{option} is for a TNC, and {} has a System 900",
-            folder.display()
-        )));
-    }
+    let of_a_tnc = [
+        ("--rs232", options.rs232.is_some()),
+        ("--rs422", options.rs422.is_some()),
+        ("--print", options.print.is_some()),
+        ("--record", options.record.is_some()),
+        ("--replay", options.replay.is_some()),
+    ];
+    UsageError::unless_of_a_tnc(&of_a_tnc, folder)?;
     let machine = match Machine900::load(folder)? {
         Ok(machine) => machine,
         Err(faults) => {
@@ -36,48 +39,17 @@ pub(super) fn command(
     station.take(&Input::Speed(options.speed)).map_err(in_words)?;
     let interrupt = Interrupt::on_ctrl_c();
     let live = Live::start(station);
-    let shown = serve(&live, &name, options, served, &interrupt);
+    let shown = Service900::of(&live).map_err(in_words).and_then(|service| {
+        let server = served.map(|served| Server::start(service.clone(), served));
+        let server = server.transpose().map_err(in_words)?;
+        if let Some(server) = &server {
+            say_page(options, &name, server);
+        }
+        let shown = show(options, service, &interrupt, || live.has_ended());
+        server.map_or((), Server::end);
+        shown
+    });
     // Whatever became of the page, what was done is kept.
     live.end().map_err(UsageError::new)?;
     shown.map(|()| Outcome::Fine)
-}
-
-/// The page, and the terminal, until the operator leaves.
-fn serve(
-    live: &Live<Station900>,
-    name: &str,
-    options: &PanelOptions,
-    served: Option<ServerOptions>,
-    interrupt: &Interrupt,
-) -> Result<(), UsageError> {
-    let service = Service900::of(live).map_err(in_words)?;
-    let server = served.map(|served| Server::start(service.clone(), served));
-    let server = server.transpose().map_err(in_words)?;
-    if let Some(server) = &server {
-        options.say_page(name, server);
-    }
-    let shown = match options.in_the_terminal() {
-        true => terminal::show(service, || interrupt.is_requested() || live.has_ended()),
-        false => {
-            until_ctrl_c(interrupt);
-            Ok(())
-        }
-    };
-    if let Some(server) = server {
-        server.end();
-    }
-    shown
-}
-
-/// An option that means something to a TNC alone.
-fn of_a_tnc(options: &PanelOptions) -> Option<&'static str> {
-    let all = [
-        ("--rs232", options.rs232.is_some()),
-        ("--rs422", options.rs422.is_some()),
-        ("--print", options.print.is_some()),
-        ("--record", options.record.is_some()),
-        ("--replay", options.replay.is_some()),
-    ];
-    let given = all.into_iter().find(|(_, given)| *given);
-    given.map(|(option, _)| option)
 }

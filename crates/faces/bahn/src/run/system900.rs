@@ -23,12 +23,7 @@ use crate::{Outcome, UsageError, console, diagnostics, files};
 
 /// Runs the programs of a machine and reports.
 pub(super) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError> {
-    if let Some(option) = of_a_tnc(options) {
-        return Err(UsageError::new(format!(
-            "{option} is for a TNC, and {} has a System 900",
-            options.machine.display()
-        )));
-    }
+    UsageError::unless_of_a_tnc(&of_a_tnc(options), &options.machine)?;
     let machine = match Machine900::load(&options.machine)? {
         Ok(machine) => machine,
         Err(faults) => return refused(&faults),
@@ -63,10 +58,10 @@ pub(super) fn command(options: &RunMachineOptions) -> Result<Outcome, UsageError
     Ok(outcome)
 }
 
-/// An option that means something to a TNC alone.
-fn of_a_tnc(options: &RunMachineOptions) -> Option<&'static str> {
+/// Options that mean something to a TNC alone, and whether they are given.
+fn of_a_tnc(options: &RunMachineOptions) -> [(&'static str, bool); 15] {
     let (run, output) = (&options.run, &options.output);
-    let all = [
+    [
         ("--with", options.with.is_some()),
         ("--tools", run.tools.is_some()),
         ("--mp", !run.mp.is_empty()),
@@ -82,9 +77,7 @@ fn of_a_tnc(options: &RunMachineOptions) -> Option<&'static str> {
         ("--compare", output.compare.is_some()),
         ("--image", output.image.is_some()),
         ("--mesh", output.mesh.is_some()),
-    ];
-    let given = all.into_iter().find(|(_, given)| *given);
-    given.map(|(option, _)| option)
+    ]
 }
 
 fn refused(faults: &[Diagnostic]) -> Result<Outcome, UsageError> {

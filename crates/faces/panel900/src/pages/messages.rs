@@ -111,7 +111,7 @@ impl Page for Messages {
             true => sight.words("LIST"),
             false => sight.words("INFO"),
         };
-        [sight.words("ACKNOW- LEDGE"), info]
+        [sight.words("ACKNOWLEDGE"), info]
     }
 
     fn soft_key(&mut self, which: usize, desk: &mut Desk<'_>) -> Result<(), Refusal> {

@@ -229,6 +229,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "host",
             "kernel",
             "live",
+            "path",
             "screen",
             "service",
             "system900",

@@ -80,6 +80,7 @@ const NOT_DIRECTIONS: &[(&str, &str)] = &[
         "motion: backward",
         "the way back along a path, whatever its axes do",
     ),
+    ("live: down", "whether a key is pressed; a field of JSON"),
     ("panel: down", "which arrow key moves the cursor; a field of JSON"),
     ("panel: negative", "the sign of a number that is entered"),
     ("path: forward", "in the sense of a contour, or against it"),
