@@ -21,6 +21,8 @@ use crate::machine::Machine;
 
 /// Degrees per minute of one rpm.
 const DEG_MIN_PER_RPM: f64 = 360.0;
+/// The override of spindles where none is named.
+const SPINDLE_OVERRIDE: f64 = 2.0;
 /// Handwheels, and spindles.
 const WHEELS: u8 = 8;
 /// Steps of the manual table where none is loaded, mm (inferred: their first ones are lost).
@@ -223,6 +225,7 @@ pub(crate) fn begin_seek(machine: &mut Machine, physical: u8) {
 pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
     turn_wheels(machine, measured);
     turn_spindles(machine);
+    turn_by_plc(machine);
     for k in 0..machine.channels.len() {
         let feed = manual_feed(machine, k as u8 + 1);
         let is_hand = machine
@@ -298,6 +301,57 @@ fn turn_spindles(machine: &mut Machine) {
             let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
             machine.memory.show_spindle(number, rpm / spindle.unit_rpm, state);
         }
+    }
+}
+
+/// P12134: axes turn as the PLC says, with P12124 and the override P12129 [002:8199-8228].
+///
+/// Decision: P12134 of a System 900 leaves an axis alone that turns as a spindle by P11650
+fn turn_by_plc(machine: &mut Machine) {
+    let time_s = f64::from(machine.core.timing.contour_us()) * 1e-6;
+    let axes = machine
+        .places
+        .iter()
+        .zip(&mut machine.hands)
+        .zip(machine.core.axes.iter_mut());
+    for ((place, hand), unit) in axes {
+        let memory = &mut machine.memory;
+        let bits = memory.of_axis(place.physical, AxisParameter::Turn).bits();
+        let order = match bits.unwrap_or(0).to_le_bytes() {
+            [1, ..] => 1,
+            [_, 1, ..] => -1,
+            _ => 0,
+        };
+        if hand.turns != hand.turns_by_plc || order == 0 && !hand.turns_by_plc {
+            continue;
+        }
+        let number = |parameter| {
+            let cell = memory.of_axis(place.physical, parameter);
+            cell.number().filter(|number| *number > 0.0)
+        };
+        let speed = number(AxisParameter::TurnSpeed).unwrap_or(place.block.max_mm_min);
+        let percent = number(AxisParameter::TurnOverride).unwrap_or(SPINDLE_OVERRIDE);
+        let spindle = SpindleBlock {
+            number: 0,
+            axis: place.physical,
+            max_rpm: f64::INFINITY,
+            rpm: speed * memory.override_percent(percent as u8) / 100.0 / DEG_MIN_PER_RPM,
+            unit_rpm: 1.0,
+            order,
+            position_deg: 0.0,
+            tolerance_percent: None,
+        };
+        let reached = turn(&spindle, hand, unit, time_s);
+        hand.turns_by_plc = hand.turns;
+        if let Some(of) = Memory::axis_place(place.physical, AxisParameter::TurnReached) {
+            memory.store_bits(of, reached.into());
+        }
+        let actual = if hand.turns {
+            unit.servo.actual_velocity_mm_min()
+        } else {
+            0.0
+        };
+        memory.set_axis(place.physical, AxisParameter::TurnSpeedActual, actual, 3);
     }
 }
 
