@@ -67,6 +67,8 @@ pub(crate) struct Hand {
     pub wheel: Option<(u8, i64, f64)>,
     /// It turns as a spindle.
     pub turns: bool,
+    /// It does so as P12134 says.
+    pub turns_by_plc: bool,
 }
 
 /// What watches an axis.

@@ -1,5 +1,4 @@
-//! Single axes beside all paths: direction keys and steps in HAND, positions of the PLC, the reference point, handwheels,
-//! spindles.
+//! Single axes beside all paths: direction keys and steps in HAND, positions of the PLC, the reference point, handwheels.
 //!
 //! Decision: Keys and steps move axes in HAND alone, with P8755, at most P8754; where neither is loaded as fast as the axis
 //! can
@@ -12,16 +11,15 @@ use bahn_kernel::{AxisUnit, HandMove, Mover, Now, move_by_hand, within};
 use bahn_motion::Aim;
 use bahn_path::Direction;
 use bahn_servo::Measured;
-use bahn_system900::{AxisParameter, ChannelParameter, Memory, SpindleBlock};
+use bahn_system900::{AxisParameter, ChannelParameter, Memory};
 
 use crate::axis_state::{AxisPlace, Goal, Hand, Report};
 use crate::channel::Mode;
 use crate::enable::{is_locked, slope_mm_min};
 use crate::machine::Machine;
+use crate::spindles;
 
-/// Degrees per minute of one rpm.
-const DEG_MIN_PER_RPM: f64 = 360.0;
-/// Handwheels, and spindles.
+/// Handwheels.
 const WHEELS: u8 = 8;
 /// Steps of the manual table where none is loaded, mm (inferred: their first ones are lost).
 const STEPS_MM: [f64; 7] = [10.0, 1.0, 0.1, 0.01, 0.001, 0.0, 0.0];
@@ -222,7 +220,7 @@ pub(crate) fn begin_seek(machine: &mut Machine, physical: u8) {
 /// Moves what nothing but the operator and the PLC moves, for a cycle.
 pub(crate) fn move_axes(machine: &mut Machine, measured: &Measured) {
     turn_wheels(machine, measured);
-    turn_spindles(machine);
+    spindles::turn(machine);
     for k in 0..machine.channels.len() {
         let feed = manual_feed(machine, k as u8 + 1);
         let is_hand = machine
@@ -277,65 +275,6 @@ fn turn_wheels(machine: &mut Machine, measured: &Measured) {
                 Some(other) => Some(other),
                 None => Some((number, count, unit.nominal)),
             };
-        }
-    }
-}
-
-/// P11640: spindles turn as they are ordered [002:6575-6627].
-fn turn_spindles(machine: &mut Machine) {
-    for number in 1..=WHEELS {
-        let Some(spindle) = machine.memory.spindle(number) else {
-            continue;
-        };
-        let time_s = f64::from(machine.core.timing.contour_us()) * 1e-6;
-        let axes = machine
-            .places
-            .iter()
-            .zip(&mut machine.hands)
-            .zip(machine.core.axes.iter_mut());
-        for ((_, hand), unit) in axes.filter(|((place, _), _)| place.physical == spindle.axis) {
-            let state = turn(&spindle, hand, unit, time_s);
-            let rpm = unit.servo.actual_velocity_mm_min() / DEG_MIN_PER_RPM;
-            machine.memory.show_spindle(number, rpm / spindle.unit_rpm, state);
-        }
-    }
-}
-
-/// A spindle for a cycle; what P11651 says.
-fn turn(spindle: &SpindleBlock, hand: &mut Hand, unit: &mut AxisUnit, time_s: f64) -> u8 {
-    let may = unit.can_be_driven() && matches!(unit.mover, Mover::None | Mover::Rotation);
-    if !may || spindle.order == 0 && !hand.turns {
-        return 0;
-    }
-    hand.turns = true;
-    unit.mover = Mover::Rotation;
-    let greatest = unit.parameters.motion.rapid_mm_min / DEG_MIN_PER_RPM;
-    let rpm = spindle.rpm.min(spindle.max_rpm).min(greatest);
-    match spindle.order {
-        0 => {
-            unit.come_to_rest(time_s);
-            hand.turns = unit.mover == Mover::Rotation;
-            0
-        }
-        order @ (1 | -1) => {
-            let wanted = order as f64 * rpm * DEG_MIN_PER_RPM;
-            unit.drive(time_s, Aim::Feed(wanted), wanted.abs());
-            let actual = unit.servo.actual_velocity_mm_min();
-            let near = match spindle.tolerance_percent {
-                Some(percent) => (actual - wanted).abs() <= wanted.abs() * percent / 100.0,
-                None => unit.speed * 60.0 == wanted,
-            };
-            u8::from(near && rpm > 0.0)
-        }
-        _ => {
-            let turns = ((unit.nominal - spindle.position_deg) / 360.0).round();
-            let target = spindle.position_deg + turns * 360.0;
-            unit.drive(time_s, Aim::Position(target), rpm.max(1.0) * DEG_MIN_PER_RPM);
-            if unit.ptp.is_at(target) && unit.servo.in_position() {
-                2
-            } else {
-                0
-            }
         }
     }
 }

@@ -55,6 +55,7 @@ mod preparing;
 mod restart;
 mod restart_place;
 mod setup;
+mod spindles;
 mod status;
 mod transfer;
 mod units;

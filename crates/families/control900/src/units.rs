@@ -110,7 +110,7 @@ pub fn path_limits(memory: &Memory, channel: u8) -> Limits {
 }
 
 fn limits_of(of: impl Fn(Axis) -> Option<AxisBlock>, timing: Timing) -> Limits {
-    let speed = |block: AxisBlock| block.max_mm_min;
+    let speed = |block: AxisBlock| block.path_mm_min;
     let acceleration = |block: AxisBlock| block.max_mm_min / 60.0 / block.ramps_s[1] * 1e-3;
     Limits {
         max_feed_mm_min: PerAxis::from_fn(|axis| of(axis).map_or(0.0, speed)),

@@ -71,10 +71,14 @@ AxisParameter {
     GoAbsolute = 112,
     /// P12119: speed of the handwheel.
     WheelSpeed = 119,
+    /// P12120: greatest speed on paths.
+    PathSpeed = 120,
     /// P12121: speed of P12111; that of P12112 follows.
     RelativeSpeed = 121,
     /// P12126: override of P12111; that of P12112 follows.
     RelativeOverride = 126,
+    /// P12129: override of P12134.
+    TurnOverride = 129,
     /// P12130: seeks the reference point.
     Reference = 130,
     /// P12134: turns as a spindle.
@@ -129,6 +133,8 @@ AxisParameter {
     AxisSpeed = 170,
     /// P12171: speed to a relative position, actual; absolute and fixed follow.
     RelativeSpeedActual = 171,
+    /// P12174: speed as a spindle, actual.
+    TurnSpeedActual = 174,
     /// P12180: reference point.
     ReferenceState = 180,
     /// P12181: a measured position was taken.
@@ -137,6 +143,8 @@ AxisParameter {
     EmergencyReached = 182,
     /// P12183: the fixed position is reached.
     FixedReached = 183,
+    /// P12184: the speed as a spindle is reached.
+    TurnReached = 184,
     /// P12185: at a software limit.
     AtLimit = 185,
     /// P12186: a nominal value is given.
@@ -176,6 +184,8 @@ pub struct AxisBlock {
     pub turn_deg: Option<f64>,
     /// Greatest speed, mm/min.
     pub max_mm_min: f64,
+    /// Greatest speed on paths, mm/min.
+    pub path_mm_min: f64,
     /// Speeds of the slopes, mm/min.
     pub slopes_mm_min: [f64; 2],
     /// Time from 0 to the greatest speed, by hand and on paths, s.
@@ -271,6 +281,7 @@ impl AxisBlock {
             is_rotary: rotary != 0,
             turn_deg: (rotary >= 2).then_some(turn),
             max_mm_min: max_mm_min.max(LEAST_SPEED),
+            path_mm_min: positive(AxisParameter::PathSpeed, f64::INFINITY).min(max_mm_min.max(LEAST_SPEED)),
             slopes_mm_min: [
                 positive(AxisParameter::Slope, of_slope_1 * max_mm_min),
                 block

@@ -2,8 +2,8 @@
 
 use bahn_path::Axis;
 
-use crate::support::Rig;
 use crate::support::list::Line;
+use crate::support::{Rig, axis};
 
 fn x(to: f64) -> [Line; 1] {
     [Line::to(&[(Axis::X, to)], 6000.0)]
@@ -318,4 +318,47 @@ fn a_round_axis_is_shown_within_its_turn() {
     rig.until_end(1);
     rig.seconds(0.5);
     assert_eq!(rig.read("P12151"), 10.0);
+}
+
+/// P12134 turns axis 5 as a spindle: with P12124 = 36000 degrees/min to either side, at the override 2 by default, else at that of
+/// P12129; P12184 says when it is reached, P12174 how fast it is [002:8199-8228].
+#[test]
+fn the_plc_turns_axes() {
+    let mut rig = Rig::on(&(axis(5) + "q2801: 2\nq2804: 360000\nq2924: 36000\nq1318: 100\nq1313: 100\n"));
+    let turns = |rig: &mut Rig, speed: f64| {
+        rig.seconds(1.5);
+        assert!(
+            (rig.read("q2974") - speed).abs() < 100.0,
+            "{} {speed}",
+            rig.read("q2974")
+        );
+        assert_eq!(rig.read("q2984"), f64::from(speed != 0.0));
+    };
+    rig.plc("q2934", "$1");
+    turns(&mut rig, 36_000.0);
+    // Override 2 at half of its potentiometer.
+    rig.plc("P11316", "127.5");
+    turns(&mut rig, 18_000.0);
+    rig.plc("q2929", "1");
+    turns(&mut rig, 36_000.0);
+    rig.plc("q2934", "$100");
+    turns(&mut rig, -36_000.0);
+    rig.plc("q2924", "0");
+    turns(&mut rig, -360_000.0);
+    rig.plc("q2934", "0");
+    turns(&mut rig, 0.0);
+    assert!(!rig.control.moves());
+}
+
+/// P12120 = 1500 limits X on paths, not what the PLC positions.
+#[test]
+fn paths_have_their_own_greatest_speed() {
+    let mut rig = Rig::on("q2120: 1500\n");
+    rig.start(1, &[Line::to(&[(Axis::X, 50.0)], 3000.0)]);
+    rig.until(|rig| rig.exact("P12151") > 25.0);
+    assert!((rig.read("P8938") - 1500.0).abs() < 0.1, "{}", rig.read("P8938"));
+    rig.until_end(1);
+    rig.plc("P12112", "150");
+    rig.until(|rig| rig.exact("P12151") > 100.0);
+    assert!((rig.read("P12167") - 6000.0).abs() < 0.1);
 }
