@@ -90,7 +90,9 @@ impl Machine {
     /// # Errors
     /// All faults of the description, in its order.
     pub fn with_numbered_axes(text: &str) -> Result<Machine, Vec<Diagnostic>> {
-        Machine::described(Reader::new(text).with_numbered_axes())
+        let mut reader = Reader::new(text);
+        reader.numbered = true;
+        Machine::described(reader)
     }
 
     fn described(reader: Reader) -> Result<Machine, Vec<Diagnostic>> {

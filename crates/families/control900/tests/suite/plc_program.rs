@@ -205,9 +205,24 @@ fn an_acknowledged_function_is_over() {
             .function(1, 6, "M406".parse().unwrap())
     });
     let line = |m: u16| Line::to(&[], 6000.0).with(m, At::Start, Synchronisation::MvsSvs);
-    rig.start(1, &[line(5), line(6), line(5), line(6), Line::to(&[(Axis::X, 10.0)], 6000.0)]);
+    rig.start(
+        1,
+        &[
+            line(5),
+            line(6),
+            line(5),
+            line(6),
+            Line::to(&[(Axis::X, 10.0)], 6000.0),
+        ],
+    );
     rig.until_end(1);
-    assert_eq!(rig.control.transfers().filter(|transfer| transfer.ack_us.is_some()).count(), 4);
+    assert_eq!(
+        rig.control
+            .transfers()
+            .filter(|transfer| transfer.ack_us.is_some())
+            .count(),
+        4
+    );
     assert!(!rig.control.plc().unwrap().plc().bit("M20".parse().unwrap()));
 }
 
