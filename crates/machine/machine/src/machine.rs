@@ -71,8 +71,6 @@ pub struct Machine {
     /// What is wrong with the memory of the control.
     pub(crate) memory: ControlMemory,
     wires: Vec<Wire>,
-    /// Its axes have numbers beside their letters: those of their outputs.
-    pub(crate) numbered: bool,
 }
 
 impl Machine {
@@ -136,6 +134,7 @@ impl Machine {
         let panel = Panel::read(&root);
         let probe = root.section("probe").map(Probe::read);
         let mechanism = Mechanism {
+            numbered: root.reader.numbered,
             axes,
             spindles,
             devices,
@@ -145,7 +144,6 @@ impl Machine {
         };
         let index = |letter| mechanism.axes.iter().position(|axis| axis.letter == letter);
         let mut machine = Machine {
-            numbered: root.reader.numbered,
             name: root.text("name").unwrap_or("machine").to_owned(),
             clock: Clock::new(step_us),
             probe_axes: ['X', 'Y', 'Z'].map(index),
