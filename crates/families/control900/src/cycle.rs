@@ -9,7 +9,7 @@ use bahn_system900::{ChannelParameter, Event, Place, Writer};
 
 use crate::machine::Machine;
 use crate::message::Kind;
-use crate::{branch, command, coupling, enable, hand, plc, plc_run, restart};
+use crate::{branch, command, coupling, enable, hand, plc, plc_scan, restart};
 
 impl Family for Machine {
     fn core(&mut self) -> &mut Core {
@@ -33,7 +33,7 @@ impl Family for Machine {
 
     fn scan(&mut self, measured: &Measured, commands: &mut Commands) {
         self.scan_us = self.now_us + self.plc_us;
-        plc_run::scan(self, measured, commands);
+        plc_scan::scan(self, measured, commands);
         plc::answer(self);
     }
 

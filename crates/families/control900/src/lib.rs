@@ -49,6 +49,7 @@ mod monitor;
 mod plc;
 mod plc_modules;
 mod plc_run;
+mod plc_scan;
 mod plc_window;
 mod positions;
 mod preparing;

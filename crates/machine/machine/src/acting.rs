@@ -125,7 +125,7 @@ impl Machine {
     /// The letter of a physical axis of a System 900; axes of a TNC have letters alone.
     fn physical_axis(&self, number: u8) -> Result<char, EventError> {
         let axes = &self.mechanism.axes;
-        let own = |axis: &&Axis| self.numbered && axis.output + 1 == usize::from(number);
+        let own = |axis: &&Axis| self.mechanism.numbered && axis.output + 1 == usize::from(number);
         let found = axes.iter().find(own).map(|axis| axis.letter);
         found.ok_or_else(|| EventError::Name {
             what: "axis",
@@ -280,7 +280,7 @@ impl Machine {
             self.plc.loosen(input);
             return Ok(());
         }
-        if let (true, Ok(number)) = (self.numbered, what.parse()) {
+        if let (true, Ok(number)) = (self.mechanism.numbered, what.parse()) {
             let letter = self.physical_axis(number)?;
             return self.repair_axis(letter);
         }

@@ -71,8 +71,6 @@ pub struct Machine {
     /// What is wrong with the memory of the control.
     pub(crate) memory: ControlMemory,
     wires: Vec<Wire>,
-    /// Its axes have numbers beside their letters: those of their outputs.
-    pub(crate) numbered: bool,
 }
 
 impl Machine {
@@ -90,7 +88,9 @@ impl Machine {
     /// # Errors
     /// All faults of the description, in its order.
     pub fn with_numbered_axes(text: &str) -> Result<Machine, Vec<Diagnostic>> {
-        Machine::described(Reader::new(text).with_numbered_axes())
+        let mut reader = Reader::new(text);
+        reader.numbered = true;
+        Machine::described(reader)
     }
 
     fn described(reader: Reader) -> Result<Machine, Vec<Diagnostic>> {
@@ -134,6 +134,7 @@ impl Machine {
         let panel = Panel::read(&root);
         let probe = root.section("probe").map(Probe::read);
         let mechanism = Mechanism {
+            numbered: root.reader.numbered,
             axes,
             spindles,
             devices,
@@ -143,7 +144,6 @@ impl Machine {
         };
         let index = |letter| mechanism.axes.iter().position(|axis| axis.letter == letter);
         let mut machine = Machine {
-            numbered: root.reader.numbered,
             name: root.text("name").unwrap_or("machine").to_owned(),
             clock: Clock::new(step_us),
             probe_axes: ['X', 'Y', 'Z'].map(index),

@@ -11,6 +11,8 @@ use crate::spindle::Spindle;
 /// What of a machine moves and stands somewhere.
 #[derive(Clone, Debug)]
 pub(crate) struct Mechanism {
+    /// Its axes have numbers beside their letters: those of their outputs.
+    pub numbered: bool,
     pub axes: Vec<Axis>,
     /// That of the control, and those of further channels.
     pub spindles: Vec<Spindle>,

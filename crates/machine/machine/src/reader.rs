@@ -93,14 +93,6 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The description is one of a machine with a System 900: output n and encoder Xn are those of physical axis n.
-    pub fn with_numbered_axes(self) -> Reader<'t> {
-        Reader {
-            numbered: true,
-            ..self
-        }
-    }
-
     /// Contacts that may stand where an output does.
     pub fn know_contacts(&self, contacts: Vec<(String, usize)>) {
         *self.contacts.borrow_mut() = contacts;

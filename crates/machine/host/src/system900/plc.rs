@@ -7,18 +7,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use bahn_control900::Plc900;
-use bahn_exchange::{Bit, BitArea, signal};
+use bahn_exchange::BitArea;
 use bahn_machine::Folder900;
 use bahn_plc::{Access, Instruction, Op, Options, PlcProgram, Subject, Target, accesses};
 use bahn_system900::Memory;
 use bahn_text::{Diagnostic, Severity, Span};
 
-use super::window::{self, Given};
+use super::window::{self, Given, is_of_interface};
 use crate::files;
 use crate::plc_source::PlcSource;
-
-/// Markers of the interface of a TNC begin here.
-const INTERFACE: u16 = 2000;
 
 /// What there is of a PLC.
 pub(super) struct Found {
@@ -120,15 +117,6 @@ fn foreign(program: &PlcProgram) -> Vec<(&Instruction, String)> {
         }
     }
     found
-}
-
-/// A marker that nobody serves here.
-pub(super) fn is_of_interface(bit: Bit) -> bool {
-    let serves = [
-        signal::FIRST_SCAN_AFTER_POWER_ON,
-        signal::FIRST_SCAN_AFTER_PLC_INTERRUPTION,
-    ];
-    bit.area() == BitArea::M && bit.number() >= INTERFACE && !serves.contains(&bit)
 }
 
 /// Where the program sets what the control gives.

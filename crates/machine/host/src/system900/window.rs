@@ -1,16 +1,26 @@
 //! The window of `machine.toml`: which markers and double words of the PLC are which parameters.
 
 use bahn_control900::Window900;
-use bahn_exchange::{Bit, BitArea, Number, Size};
+use bahn_exchange::{Bit, BitArea, Number, Size, signal};
 use bahn_machine::Said;
 use bahn_plc::Subject;
 use bahn_system900::{Direction, M_MAX, MarkerPart, Memory, Name, marker_names};
 use bahn_text::{Diagnostic, Span, nearest};
 
-use super::plc::is_of_interface;
-
 /// How an entry is written.
 const FORM: &str = "a window has entries as \"SAFREK1 = M300\", \"P8050-P8064 = D200\", \"M3-M9 = M403\"";
+
+/// Markers of the interface of a TNC begin here.
+const INTERFACE: u16 = 2000;
+
+/// A marker that nobody serves here.
+pub(super) fn is_of_interface(bit: Bit) -> bool {
+    let serves = [
+        signal::FIRST_SCAN_AFTER_POWER_ON,
+        signal::FIRST_SCAN_AFTER_PLC_INTERRUPTION,
+    ];
+    bit.area() == BitArea::M && bit.number() >= INTERFACE && !serves.contains(&bit)
+}
 
 /// What stands in the memory of the PLC.
 pub(super) struct Given {
@@ -155,7 +165,7 @@ impl Reading<'_> {
             );
             return None;
         };
-        if is_of_interface(bit) || bit.number() >= 2000 {
+        if bit.number() >= INTERFACE {
             self.fault(entry.operand.1, format!("{bit}: free markers are M0 to M1999"));
             return None;
         }
