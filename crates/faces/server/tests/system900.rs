@@ -73,12 +73,12 @@ fn the_interface_is_that_of_every_machine() {
     );
     assert_eq!(panel.give(&json!({"go_to": 1})), 409);
     // A parameter by keys, and by what scripts do.
-    for key in ["SK3", "P", "5", "0", "0", "ENT", "7", "ENT"] {
+    for key in ["SK3", "P", "7", "ENT", "7", "ENT"] {
         panel.press(key);
     }
-    panel.until(|screen| screen["program"]["lines"][0]["text"] == "P500 = 7");
-    assert_eq!(panel.give(&json!({"action": "P500=8"})), 200);
-    panel.until(|screen| screen["program"]["lines"][0]["text"] == "P500 = 8");
+    panel.until(|screen| screen["program"]["lines"][0]["text"] == "P7 = 7");
+    assert_eq!(panel.give(&json!({"action": "P7=8"})), 200);
+    panel.until(|screen| screen["program"]["lines"][0]["text"] == "P7 = 8");
     drop(panel);
     live.end().unwrap();
 }

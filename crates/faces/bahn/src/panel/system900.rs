@@ -46,7 +46,9 @@ pub(super) fn command(
             say_page(options, &name, server);
         }
         let shown = show(options, service, &interrupt, || live.has_ended());
-        server.map_or((), Server::end);
+        if let Some(server) = server {
+            server.end();
+        }
         shown
     });
     // Whatever became of the page, what was done is kept.
