@@ -7,6 +7,7 @@ use super::load;
 use super::options::ListOptions;
 use crate::diagnostics;
 use crate::{Outcome, UsageError, console};
+use bahn_report::machine_names900;
 use bahn_text::printable;
 
 /// Commands of the control, a line each.
@@ -96,7 +97,16 @@ M2045 I4 O2 T48 C0 B8 W260 D356     as the PLC sees it; the column event tells o
 /// Prints the names of a machine.
 pub(super) fn command(options: &ListOptions) -> Result<Outcome, UsageError> {
     if Machine900::is_meant(&options.folder) {
-        return super::list900::command(&options.folder);
+        return Ok(match Machine900::load(&options.folder)? {
+            Ok(machine) => {
+                console::print(&machine_names900(&machine))?;
+                Outcome::Fine
+            }
+            Err(faults) => {
+                diagnostics::print_faults(&faults);
+                Outcome::ProgramError
+            }
+        });
     }
     let machine = match load(&options.folder)? {
         Ok(machine) => machine,

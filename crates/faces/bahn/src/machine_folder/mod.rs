@@ -5,7 +5,6 @@
 mod check;
 mod io;
 mod list;
-mod list900;
 mod load;
 mod new;
 mod options;

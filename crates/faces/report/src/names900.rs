@@ -1,12 +1,7 @@
-//! `bahn machine list` of a machine with a System 900: what a script can speak of.
+//! What a script can speak of on a machine with a System 900: axes, keys, the window of its PLC, events.
 
-use std::path::Path;
-
-use bahn_host::{Machine900, Operable};
-use bahn_machine::Event;
+use bahn_host::{Event, Machine900, Operable};
 use bahn_text::printable;
-
-use crate::{Outcome, UsageError, console, diagnostics};
 
 /// What scripts write, a line each.
 const COMMANDS: &str = "\
@@ -20,15 +15,8 @@ P12151, 2:P8685, q2150              a parameter, not rounded
 message \"M2001\", no message        what nobody has acknowledged
 ";
 
-/// Prints the names of a machine.
-pub(super) fn command(folder: &Path) -> Result<Outcome, UsageError> {
-    let machine = match Machine900::load(folder)? {
-        Ok(machine) => machine,
-        Err(faults) => {
-            diagnostics::print_faults(&faults);
-            return Ok(Outcome::ProgramError);
-        }
-    };
+/// The names of a machine, for people.
+pub fn machine_names900(machine: &Machine900) -> String {
     let row = |name: &str, items: Vec<&str>| format!("{name:<10}{}\n", items.join(" "));
     let mut text = format!("{}, System 900\n\n", printable(&machine.folder.name));
     for channel in &machine.checked.channels {
@@ -58,6 +46,5 @@ pub(super) fn command(folder: &Path) -> Result<Outcome, UsageError> {
     text += &format!("\nEvents:\n{}", Event::HELP);
     text += &format!("\nCommands:\n{COMMANDS}");
     text += &format!("\nSignals, for --signals and expectations:\n{SIGNALS}end\n");
-    console::print(&text)?;
-    Ok(Outcome::Fine)
+    text
 }
