@@ -6,7 +6,8 @@
 //! - [`plc`]: PLC programs, on a bench or in a machine;
 //! - [`scope`]: recorded signals, drawn and summed up;
 //! - [`record`]: what is collected of a run, and its report; [`text`]: the report for people;
-//! - [`technology`], [`tune`], [`convert`]: what is told of a run with M functions, of a commissioning, of a conversion;
+//! - [`technology`], [`tune`], [`torture`], [`convert`]: what is told of a run with M functions, of a commissioning, of a fault campaign,
+//!   of a conversion;
 //! - [`explain`], [`conformance`], [`faults`]: what is told of messages, functions and faults of the controls;
 //! - [`count`]: numbers of things in words; [`paragraph`]: labelled text in 80 columns;
 //! - [`junit`]: expectations for build servers; [`solid`]: what a stylus feels.
@@ -44,6 +45,7 @@ mod stop;
 pub mod technology;
 pub mod test_run;
 pub mod text;
+pub mod torture;
 pub mod tune;
 
 pub use count::count;

@@ -6,7 +6,8 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 use bahn_host::HostError;
-use bahn_trials::torture::{Campaign, Plan, Rule, Trial, Violation, Worker};
+use bahn_report::torture::Tried;
+use bahn_trials::torture::{Campaign, Worker};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::UsageError;
@@ -14,14 +15,6 @@ use crate::interrupt::Interrupt;
 
 /// Stack of a worker, that of the main thread of a program.
 const STACK_BYTES: usize = 8 << 20;
-
-/// A seed that is done.
-pub(super) struct Tried {
-    pub plan: Plan,
-    pub trial: Trial,
-    /// With what is needed only, when a rule did not hold.
-    pub shrunk: Option<(Plan, Trial)>,
-}
 
 /// The seeds of a campaign and how it goes.
 struct Course<'a> {
@@ -100,7 +93,7 @@ fn work(course: &Course, sender: &Sender<News>) {
         let tried = tried.unwrap_or_else(|_| {
             // What is left of its control is of no use any more.
             let plan = worker.take().map(|worker: Worker| worker.plan(seed));
-            Ok(panicked(seed, plan))
+            Ok(Tried::panicked(seed, plan))
         });
         let failed = tried.is_err();
         if sender.send(tried.map(Box::new)).is_err() || failed {
@@ -119,32 +112,6 @@ fn one(worker: &mut Worker, seed: u64) -> Tried {
         (plan, trial)
     });
     Tried { plan, trial, shrunk }
-}
-
-/// A panic of the control is a violation, too.
-fn panicked(seed: u64, plan: Option<Plan>) -> Tried {
-    let plan = plan.unwrap_or(Plan {
-        seed,
-        program: 0,
-        moment: 0,
-        happenings: Vec::new(),
-        end_us: 0,
-    });
-    let violation = Violation {
-        rule: Rule::Alive,
-        time_s: 0.0,
-        values: "the control panics".to_owned(),
-    };
-    let trial = Trial {
-        violation: Some(violation),
-        done: plan.happenings.clone(),
-        ..Trial::default()
-    };
-    Tried {
-        plan,
-        trial,
-        shrunk: None,
-    }
 }
 
 fn bar(seeds: u64, machine: &str) -> ProgressBar {
