@@ -570,10 +570,15 @@ fn a_plc_program_that_lets_a_run_hang_is_found_out() {
     );
 }
 
-/// Both heads of the portal with a System 900.
+/// Both heads of the portal with a System 900, on an ideal machine: it has neither EMERGENCY STOP nor things.
 #[test]
 fn the_portal_holds_every_rule() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
-    // An ideal machine has neither EMERGENCY STOP nor things.
-    try_campaign("portal900", &load(&folder), 0..2000, 4);
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
+    let copy = Copy::of_folder(&shipped, "ideal-portal");
+    let ideal =
+        "name = 'Portal'\ncontrol = 'system900'\nparameters = 'parameters.q'\nprograms = 'programs'\n";
+    std::fs::write(copy.path().join("machine.toml"), ideal).unwrap();
+    // The standard answers change tools.
+    std::fs::remove_file(copy.path().join("programs/Z6.900")).unwrap();
+    try_campaign("portal900", &load(copy.path()), 0..500, 4);
 }
