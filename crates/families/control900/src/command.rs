@@ -181,7 +181,7 @@ fn take_start(machine: &mut Machine, number: u8, start: bool) {
     }
 }
 
-/// The mode is AUTO, the axes are enabled and referenced, there is a program, and no message holds it back.
+/// The mode is AUTO, the loops are closed, the axes are enabled and referenced, there is a program, and no message holds it back.
 pub(crate) fn may_start(machine: &Machine, number: u8) -> bool {
     let Some(channel) = machine.channels.get(usize::from(number) - 1) else {
         return false;
@@ -190,6 +190,7 @@ pub(crate) fn may_start(machine: &Machine, number: u8) -> bool {
     channel.mode != Mode::Hand
         && channel.program.is_some()
         && !machine.messages.break_off(number)
+        && is_set(ChannelParameter::LoopsEnabled)
         && is_set(ChannelParameter::AxesEnabled)
         && is_set(ChannelParameter::Referenced)
 }

@@ -1,4 +1,6 @@
 //! What holds the loops and lets the axes move: P8700, P8701, P8702, P8891, clamps [002:3752-3767].
+//!
+//! Decision: A System 900 whose loops are released, P8700, stops its program; START leads the axes back first
 
 use bahn_kernel::AxisUnit;
 use bahn_path::{Direction, PathElement};
@@ -64,6 +66,14 @@ pub(crate) fn follow_enables(machine: &mut Machine) {
         if let Some(channel) = machine.channels.get_mut(k) {
             channel.slope_mm_min = slope;
         }
+    }
+    // A path whose axes are no longer held stops; START leads them back to where it was left.
+    for channel in machine
+        .channels
+        .iter_mut()
+        .filter(|channel| !channel.loops_enabled)
+    {
+        channel.wanted.stop = true;
     }
     for channel in machine
         .channels

@@ -295,6 +295,7 @@ impl Machine {
         };
         run.stop();
         run.break_off(&mut site.acting());
+        site.axes.forget_path();
         run.track.path.clear();
         *site.waits_for_m = false;
         (*site.branch, *site.residual) = (None, None);

@@ -363,6 +363,13 @@ impl OwnAxes<'_> {
         }
     }
 
+    /// The path was given up: nothing is left to go back to.
+    pub fn forget_path(&mut self) {
+        for unit in self.iter_mut() {
+            unit.left_at = None;
+        }
+    }
+
     /// No path leads them: those that stand count within one turn, and nothing is left to go back to.
     pub fn settle(&mut self) {
         for unit in self.iter_mut() {

@@ -238,6 +238,80 @@ fn an_emergency_program_that_is_not_there_is_said() {
     assert_eq!(said, ["emergency program 3 is not there, channel 1"]);
 }
 
+/// P8700 goes in the middle of a path, and the axis is pushed away: the program stops, nothing of the path is left out. START leads the
+/// axis back to where the path was left.
+#[test]
+fn released_loops_stop_the_program() {
+    let mut rig = Rig::answered(
+        "",
+        StandardAnswers {
+            enable: false,
+            ..StandardAnswers::ALL
+        },
+    );
+    for name in ["P8700", "P8701", "P8709"] {
+        rig.plc(name, "1");
+    }
+    rig.start(1, &two_lines());
+    rig.until(|rig| rig.read("P12151") > 40.0);
+    rig.plc("P8700", "0");
+    rig.seconds(0.2);
+    assert_eq!(rig.read("P8685"), 1.0);
+    let [x, y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    // The nominal position is the actual one now, which lagged by 50 mm/s / 16/s in the path, less in X.
+    assert!((36.0..42.0).contains(&x), "{x}");
+    // 5 mm at 1000 increments a mm.
+    rig.plant.ideal.turn(0, 5000);
+    rig.seconds(0.1);
+    assert!((rig.read("P12151") - x - 5.0).abs() < 0.01, "it follows");
+    // Nothing starts without loops.
+    rig.operator("P8682", "2");
+    rig.seconds(0.1);
+    assert_eq!(rig.read("P8685"), 1.0);
+    rig.plc("P8700", "1");
+    rig.seconds(0.1);
+    assert_eq!(rig.read("P8685"), 1.0);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8901") == 20.0);
+    // The first line was passed to its end.
+    let [now_x, now_y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    assert!(
+        (now_x - 100.0).abs() < 0.1 && (now_y - 50.0).abs() < 0.1,
+        "{now_x} {now_y}, from {x} {y}"
+    );
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (10.0, 20.0));
+}
+
+/// A program that was broken off while its loops were released leaves nothing behind: the next one moves its axes.
+#[test]
+fn a_program_after_released_loops_moves_its_axes() {
+    let mut rig = Rig::answered(
+        "",
+        StandardAnswers {
+            enable: false,
+            ..StandardAnswers::ALL
+        },
+    );
+    for name in ["P8700", "P8701", "P8709"] {
+        rig.plc(name, "1");
+    }
+    rig.start(1, &two_lines());
+    rig.until(|rig| rig.read("P12151") > 40.0);
+    rig.plc("P8700", "0");
+    rig.seconds(0.2);
+    rig.plc("P8705", "1");
+    rig.seconds(0.1);
+    rig.plc("P8700", "1");
+    rig.seconds(0.1);
+    rig.operator("P8682", "2");
+    rig.until(|rig| rig.read("P8901") == 20.0);
+    let [x, y] = ["P12151", "P12351"].map(|name| rig.read(name));
+    assert!((x - 100.0).abs() < 0.1 && (y - 50.0).abs() < 0.1, "{x} {y}");
+    rig.until_end(1);
+    assert_eq!((rig.read("P12151"), rig.read("P12351")), (10.0, 20.0));
+}
+
 /// Emergency program 1 interrupts the one that runs, whose place is kept, and is started with its block P8821; the mode AUTO
 /// stays, P8710 is 0 again [002:3856-3873].
 #[test]

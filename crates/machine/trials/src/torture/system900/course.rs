@@ -3,6 +3,7 @@
 use bahn_control900::Control900;
 use bahn_host::{Answer, HostError, Source};
 use bahn_path::Position;
+use bahn_system900::ChannelParameter;
 
 use super::action::action;
 use super::axes::Axes;
@@ -141,16 +142,16 @@ impl Course<'_> {
             let Some((element, _)) = control.executed(channel).filter(|_| *same) else {
                 continue;
             };
-            let mut place = Position::UNKNOWN;
-            let mut moves = false;
-            for view in control.axes().filter(|view| view.channel == channel) {
-                if let Some(axis) = view.on_path.filter(|_| view.is_led) {
-                    place[axis] = view.nominal;
-                    moves |= view.speed_mm_s != 0.0;
-                }
-            }
-            if !moves {
+            let feed = control.memory().of_channel(channel, ChannelParameter::ActualFeed);
+            if feed.number().is_none_or(|feed| feed == 0.0) {
                 continue;
+            }
+            // An axis that stands while its path goes on is beside it, too.
+            let mut place = Position::UNKNOWN;
+            for view in control.axes().filter(|view| view.channel == channel) {
+                if let Some(axis) = view.on_path {
+                    place[axis] = view.nominal;
+                }
             }
             let away = contour.distance(&place, element.block, CONTOUR, 0.0, hint);
             if away > CONTOUR {
