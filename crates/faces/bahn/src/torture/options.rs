@@ -17,7 +17,7 @@ Examples:
       A marker by which a copy of the PLC program is made to fail joins what happens.
   bahn torture --machine machines/mill-tnc360 --seeds 31..32 --record seed.txt
       Repeats one seed, and writes what happens in it as a script; bahn run repeats that with its report.
-  bahn torture --machine machines/portal900 --seeds 0..50
+  bahn torture --machine machines/portal900 --seeds 0..15
       A machine with a System 900: all its channels at once.
 
 A seed says everything: the program, the moment of its undisturbed run, what fails, what is pressed, and when. In the end
