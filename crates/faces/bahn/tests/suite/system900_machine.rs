@@ -17,7 +17,7 @@ fn the_portal_is_fine() {
     );
     assert_eq!(
         report[0]["programs"].as_array().map(Vec::len),
-        Some(6),
+        Some(7),
         "{report}"
     );
 }

@@ -230,7 +230,7 @@ fn parameters_survive_power_off() {
 /// The event buffer: P11271 and P11272 ask for M functions and blocks. A TNC has none.
 #[test]
 fn the_event_buffer_is_written() {
-    let folder = Folder::with_portal();
+    let folder = Folder::with_ideal_portal();
     let script = "0.1: P11271=$110, P11272=$110\n";
     let (code, _, errors) = with_script(&folder, script, "--sample events.txt");
     assert_eq!(code, 0, "{errors}");
