@@ -83,7 +83,7 @@ pub const MODULE_TNC360: ShippedMachine = machine!("module-tnc360" for "tnc360":
 /// A portal with two heads on one beam; its control is a System 900. It is a start where it is asked for by its name.
 pub const PORTAL900: ShippedMachine = machine!("portal900" for "system900":
     "README.md", "machine.toml", "parameters.q", "plant.toml", "plc/MAIN.PLC",
-    "programs/P1000.900", "programs/P2000.900", "programs/P9002.900", "programs/Z6.900", "programs/Z100.900",
+    "programs/P1000.900", "programs/P2000.900", "programs/P9001.900", "programs/P9002.900", "programs/Z6.900", "programs/Z100.900",
     "programs/Z234.900", "scripts/stop.txt", "scripts/again.txt", "scripts/emergency.txt", "scripts/lock.txt",
 );
 

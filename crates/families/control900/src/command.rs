@@ -71,7 +71,7 @@ fn notice_channel(machine: &mut Machine, number: u8, parameter: ChannelParameter
         ChannelParameter::MeasuringKey if value == Some(1) => branch::measure(machine, number),
         ChannelParameter::MeasuringRelease if is_set => branch::release_measuring(machine, number),
         ChannelParameter::EndWay if value == Some(1) => branch::end_the_way(machine, number),
-        ChannelParameter::Acknowledge => acknowledge(machine, number),
+        ChannelParameter::Acknowledge if is_set => acknowledge(machine, number),
         ChannelParameter::SystemMessage
         | ChannelParameter::HighMessage
         | ChannelParameter::LowMessage

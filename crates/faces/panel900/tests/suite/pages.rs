@@ -30,7 +30,7 @@ fn positions_are_those_that_are_asked_for() {
 fn a_program_is_chosen_by_its_number_or_with_the_cursor() {
     let mut panel = Panel::of_the_portal();
     panel.keys("SK2");
-    assert_eq!(panel.page(), ["* P1000", "  P2000", "  P9002"]);
+    assert_eq!(panel.page(), ["* P1000", "  P2000", "  P9001", "  P9002"]);
     panel.keys("DOWN ENT");
     panel.run(0.01);
     assert_eq!(panel.number("P8800"), Some(2000.0));

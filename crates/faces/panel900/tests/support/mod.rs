@@ -1,6 +1,8 @@
 //! The portal, operated by keys.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use bahn_host::{KeyAction, Machine900, PowerOn900};
 use bahn_live::{Input, InputText, Refusal};
@@ -12,10 +14,9 @@ use bahn_system900::Name;
 pub struct Panel(pub Station900);
 
 impl Panel {
-    /// The portal of the machines, fresh; the standard answers have enabled its axes.
+    /// The portal of the machines on an ideal machine, fresh; the standard answers have enabled its axes.
     pub fn of_the_portal() -> Panel {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
-        let machine = Machine900::load(&folder)
+        let machine = Machine900::load(ideal_portal())
             .unwrap()
             .unwrap_or_else(|faults| panic!("{faults:?}"));
         let mut panel = Panel(Station900::switched_on(machine, PowerOn900::fresh));
@@ -102,4 +103,29 @@ impl Panel {
             .map(|message| message.text.clone());
         messages.collect::<Vec<_>>().join("; ")
     }
+}
+
+/// A copy of the portal without its plant and its PLC program; the standard answers change tools.
+fn ideal_portal() -> &'static Path {
+    static COPY: OnceLock<PathBuf> = OnceLock::new();
+    COPY.get_or_init(|| {
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../machines/portal900");
+        let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ideal-portal");
+        fs::create_dir_all(copy.join("programs")).unwrap();
+        for entry in fs::read_dir(shipped.join("programs")).unwrap() {
+            let name = entry.unwrap().file_name();
+            if name != "Z6.900" {
+                fs::copy(
+                    shipped.join("programs").join(&name),
+                    copy.join("programs").join(&name),
+                )
+                .unwrap();
+            }
+        }
+        fs::copy(shipped.join("parameters.q"), copy.join("parameters.q")).unwrap();
+        let described = fs::read_to_string(shipped.join("machine.toml")).unwrap();
+        let (ideal, _) = described.split_once("plant = ").unwrap();
+        fs::write(copy.join("machine.toml"), ideal).unwrap();
+        copy
+    })
 }
