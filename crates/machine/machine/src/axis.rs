@@ -265,6 +265,15 @@ const STANDING: f64 = 1e-12;
 /// So far beyond its play a motor may stand, mm or degrees: places are rounded.
 const PLACE_WINDOW: f64 = 1e-6;
 
+/// Its drive whose current the control gives, where it has one.
+fn current_drive(section: &Section, turns: bool, step_s: f64) -> Option<Box<CurrentDrive>> {
+    section.section("current_drive").map(|table| {
+        let drive = CurrentDrive::read(&table, turns, step_s);
+        table.finish();
+        Box::new(drive)
+    })
+}
+
 impl Axis {
     /// An axis as the section `[axis.X]` of the machine file describes it; `None` where its name is no axis.
     pub fn read(name: &str, section: Section, step_s: f64, seed: u64) -> Option<Axis> {
@@ -282,11 +291,7 @@ impl Axis {
         if !(travel[0]..=travel[1]).contains(&start) {
             section.fault_at("start", "start lies outside travel".to_owned());
         }
-        let current = section.section("current_drive").map(|table| {
-            let drive = CurrentDrive::read(&table, turns, step_s);
-            table.finish();
-            Box::new(drive)
-        });
+        let current = current_drive(&section, turns, step_s);
         let amplifier = Amplifier::read(&section, current.is_some(), step_s);
         let rotor = current.as_ref().map_or(0.0, |drive| drive.mass);
         let mass = section.number("mass", 0.001..=1e6).unwrap_or(1.0) + rotor;
