@@ -276,7 +276,7 @@ fn the_flash_keeps_parameters_and_programs() {
     folder.write("portal/programs/P7.900", "N10 M30\n");
     // Bit 4.5 of P510: it is stored.
     let file = folder.read("portal/parameters.q");
-    folder.write("portal/parameters.q", &format!("{file}\nP510: 1 $20000001\n"));
+    folder.write("portal/parameters.q", format!("{file}\nP510: 1 $20000001\n"));
     session("0.1: P510=2\n+0.1: q10=170\n+0.1: q10=175\n+0.1: P510=3\n+0.1: end\n");
     folder.write("portal/programs/P7.900", "N10 M2\n");
     let (report, errors) = session("0.1: expect P510=3\n+0.1: q10=200\n+0.1: q10=205\n+0.1: end\n");
