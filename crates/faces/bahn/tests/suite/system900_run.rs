@@ -243,11 +243,12 @@ fn the_event_buffer_is_written() {
         let [earlier, later] = [earlier, later].map(|event| text.find(event).unwrap_or(usize::MAX));
         earlier < later && later < usize::MAX
     };
+    // A block is shown when its functions are out.
     assert!(
         after(
-            "PROG: K1 P1000 N110",
-            "K1 M6 --> PLC, NR in the block:0, without branch"
-        ),
+            "K1 M6 --> PLC, NR in the block:0, without branch",
+            "PROG: K1 P1000 N110"
+        ) && after("PROG: K1 P1000 N110", "PROG: K1 P1000 N120"),
         "{text}"
     );
     assert!(
